@@ -294,8 +294,8 @@ TEST(MultigridShellSolver, HasTheSameBitsOnEveryInstructionSet)
 
 TEST(MultigridShellSolver, GoesOnWithAnotherShellAsIfItWereNew)
 {
-    const Shell          one = shellOf(square(40), wart(10), constant(1, 0.3, 0), 8, Edge::clamped);
-    const Shell          two = shellOf(square(40), disc(10), constant(1, -1, 0.2), 12);
+    const Shell          one   = shellOf(square(40), wart(10), constant(1, 0.3, 0), 8, Edge::clamped);
+    const Shell          two   = shellOf(square(40), disc(10), constant(1, -1, 0.2), 12);
     const Shell          large = shellOf(PlateGrid{22, 37, kSize / 22, kSize / 37}, even(), constant(1, 1, 0), 4);
     MultigridShellSolver solver(one);
     for (const Shell* shell : {&two, &large, &one}) {

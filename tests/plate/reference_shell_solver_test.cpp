@@ -264,8 +264,8 @@ TEST(ShearWork, IsExactWhereForcesAcrossTheSheetAreTheSameEverywhere)
             shell.membraneCompliance(i, j) = compliance(i, j);
         }
     const double dx = kRigidity * alongX / hx, dz = kRigidity * alongZ / hz;
-    const double qx = dx * (2 * a + kPoisson * 2 * b) + dz * (1 - kPoisson) * g;
-    const double qz = dz * (2 * b + kPoisson * 2 * a) + dx * (1 - kPoisson) * g;
+    const double qx       = dx * (2 * a + kPoisson * 2 * b) + dz * (1 - kPoisson) * g;
+    const double qz       = dz * (2 * b + kPoisson * 2 * a) + dx * (1 - kPoisson) * g;
     double       expected = 0;
     for (int i = 1; i <= 6; ++i)
         for (int j = 1; j <= 4; ++j) { // between inner nodes

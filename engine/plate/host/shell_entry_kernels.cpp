@@ -38,11 +38,11 @@ public:
           doubles_(push_.toDoubles ? bound<double>(d, 2) : nullptr), cellsX_(push_.layout.cellsX),
           cellsZ_(push_.layout.cellsZ), stride_(cellsZ_ + 1 + 2 * kRim)
     {
-        constexpr int         kMaps = 13, kAxes = 4;
-        const std::ptrdiff_t  map   = (cellsX_ + 1 + 2 * kRim) * stride_;
-        const std::ptrdiff_t  all   = kMaps * map + (kShellPlanes * kKept + kAxes) * stride_;
+        constexpr int                       kMaps = 13, kAxes = 4;
+        const std::ptrdiff_t                map = (cellsX_ + 1 + 2 * kRim) * stride_;
+        const std::ptrdiff_t                all = kMaps * map + (kShellPlanes * kKept + kAxes) * stride_;
         static thread_local Scratch<double> scratch;
-        next_                       = scratch.of(all);
+        next_ = scratch.of(all);
         for (std::ptrdiff_t n = 0; n < all; ++n) next_[n] = 0;
         for (Map* m : {&bend_.xx, &bend_.zz, &bend_.xz, &bend_.twist, &stress_.xx, &stress_.zz, &stress_.xz,
                        &stress_.twist, &alongX_, &alongZ_, &cellTwist_, &wMoves_, &fMoves_})
@@ -85,10 +85,7 @@ private:
     }
 
     /// Row i of a plane, as long as it is no more than two rows from the newest one.
-    double* kept(int plane, int i) const
-    {
-        return kept_ + (plane * kKept + (i + kKept) % kKept) * stride_ + kRim;
-    }
+    double* kept(int plane, int i) const { return kept_ + (plane * kKept + (i + kKept) % kKept) * stride_ + kRim; }
 
     static double difference(int n, int step, int cells, bool hingedFirst, bool hingedLast)
     {
@@ -96,11 +93,13 @@ private:
     }
     double acrossX(int i, int step) const
     {
-        return difference(i, step, cellsX_, (maps_.stress.hinged & kSideX0) != 0U, (maps_.stress.hinged & kSideX1) != 0U);
+        return difference(i, step, cellsX_, (maps_.stress.hinged & kSideX0) != 0U,
+                          (maps_.stress.hinged & kSideX1) != 0U);
     }
     double acrossZ(int j, int step) const
     {
-        return difference(j, step, cellsZ_, (maps_.stress.hinged & kSideZ0) != 0U, (maps_.stress.hinged & kSideZ1) != 0U);
+        return difference(j, step, cellsZ_, (maps_.stress.hinged & kSideZ0) != 0U,
+                          (maps_.stress.hinged & kSideZ1) != 0U);
     }
 
     const float* at(const float* map, int i) const { return map + std::ptrdiff_t(i) * (cellsZ_ + 1); }
@@ -108,11 +107,12 @@ private:
     void moments(const PlateLevel& g, const float* rigidity, const Moments& to)
     {
         for (int i = 0; i <= cellsX_; ++i) {
-            const float * D = at(rigidity, i), *after = D + (cellsZ_ + 1);
-            const bool    onX = rules.isHingedX(g, i);
-            const double  share = i == 0 || i == cellsX_ ? 0.5 : 1;
-            double *      xx = to.xx.row(i), *zz = to.zz.row(i), *xz = to.xz.row(i), *twist = to.twist.row(i);
-            const double  kxx = onX ? 0 : share * g.kxx, kxz = onX ? 0 : share * g.kxz, kzz = onX ? g.ezz : share * g.kzz;
+            const float *D = at(rigidity, i), *after = D + (cellsZ_ + 1);
+            const bool   onX   = rules.isHingedX(g, i);
+            const double share = i == 0 || i == cellsX_ ? 0.5 : 1;
+            double *     xx = to.xx.row(i), *zz = to.zz.row(i), *xz = to.xz.row(i), *twist = to.twist.row(i);
+            const double kxx = onX ? 0 : share * g.kxx, kxz = onX ? 0 : share * g.kxz,
+                         kzz = onX ? g.ezz : share * g.kzz;
             for (int j = 0; j <= cellsZ_; ++j) {
                 xx[j] = kxx * D[j];
                 zz[j] = kzz * D[j];
@@ -160,7 +160,8 @@ private:
     /// The entries of A, or C, of row i that belong to its nodes: half of the energy's mixed terms each.
     void entries(const Moments& m, int plane, int i)
     {
-        const double here = difference(i, 1, cellsX_, false, false), back = difference(i + 1, -1, cellsX_, false, false),
+        const double here  = difference(i, 1, cellsX_, false, false),
+                     back  = difference(i + 1, -1, cellsX_, false, false),
                      there = difference(i + 1, 1, cellsX_, false, false);
         const double *xx = m.xx.row(i), *zz = m.zz.row(i), *xz = m.xz.row(i), *t = m.twist.row(i);
         const double *xxE = m.xx.row(i + 1), *xzE = m.xz.row(i + 1), *tW = m.twist.row(i - 1);
@@ -169,10 +170,10 @@ private:
         double *      east2 = kept(plane + kBendEast2, i), *north2 = kept(plane + kBendNorth2, i);
         double *      northEast = kept(plane + kBendNorthEast, i), *southEast = kept(plane + kBendSouthEast, i);
         for (int j = 0; j <= cellsZ_; ++j) {
-            east[j]   = -2 * (here * (xx[j] + xz[j]) + back * (xxE[j] + xzE[j])) - (t[j] + t[j - 1]);
-            north[j]  = -2 * (qn[j] * (zz[j] + xz[j]) + qs[j + 1] * (zz[j + 1] + xz[j + 1])) - (t[j] + tW[j]);
-            east2[j]  = back * there * xxE[j];
-            north2[j] = qs[j + 1] * qn[j + 1] * zz[j + 1];
+            east[j]      = -2 * (here * (xx[j] + xz[j]) + back * (xxE[j] + xzE[j])) - (t[j] + t[j - 1]);
+            north[j]     = -2 * (qn[j] * (zz[j] + xz[j]) + qs[j + 1] * (zz[j + 1] + xz[j + 1])) - (t[j] + tW[j]);
+            east2[j]     = back * there * xxE[j];
+            north2[j]    = qs[j + 1] * qn[j + 1] * zz[j + 1];
             northEast[j] = here * qs[j + 1] * xz[j + 1] + back * qn[j] * xzE[j] + t[j];
             southEast[j] = here * qn[j - 1] * xz[j - 1] + back * qs[j] * xzE[j] + t[j - 1];
         }
@@ -240,7 +241,7 @@ private:
         const double *e = from(kBendEast, 0), *w = from(kBendEast, -1), *n = from(kBendNorth, 0);
         const double *e2 = from(kBendEast2, 0), *w2 = from(kBendEast2, -2), *n2 = from(kBendNorth2, 0);
         const double *ne = from(kBendNorthEast, 0), *se = from(kBendSouthEast, 0), *nw = from(kBendSouthEast, -1),
-                     *sw = from(kBendNorthEast, -1);
+                     *sw   = from(kBendNorthEast, -1);
         const double *here = moves.row(i), *mE = moves.row(i + 1), *mW = moves.row(i - 1), *mE2 = moves.row(i + 2),
                      *mW2 = moves.row(i - 2);
         const double* bed = plane == kBendEast ? kept(kBed, i) : nullptr;

@@ -1,3 +1,5 @@
+#include <type_traits>
+
 #include "engine/plate/host/shell_view.h"
 #include "engine/plate/host/together.h"
 
@@ -65,7 +67,8 @@ int countOf(int cells, int parity)
 
 /// A layout's span that a compiler knows, so that all places of a stencil are a fixed way from its node; 0: it does not.
 template <int kSpan>
-struct KnownSpan {};
+struct KnownSpan {
+};
 
 /// Calls call(KnownSpan) with the spans of the levels of usual grids, of 32, 64 and 128 cells.
 template <class Call>
@@ -144,9 +147,7 @@ struct RowOfShell {
     {
         constexpr int kNear[8][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, 1}, {1, -1}, {-1, -1}};
         constexpr int kFar[4][2]  = {{2, 0}, {-2, 0}, {0, 2}, {0, -2}};
-#pragma GCC unroll 8
         for (int n = 0; n < 8; ++n) near[n] = field(which, kNear[n][0], kNear[n][1], m) - here;
-#pragma GCC unroll 4
         for (int n = 0; n < 4; ++n) far[n] = field(which, kFar[n][0], kFar[n][1], m) - here;
     }
 
@@ -184,7 +185,7 @@ template <bool kTogether, class Visit>
 template <int kSpan, bool kTogether, int kOdd, class Real, class Entry, class Stored>
 void applyRow(const ShellLayout& l, const Entry* entries, const Stored* b, const Stored* x, Stored* to, int i)
 {
-    constexpr int                                         kLoads = loadsOf(kTogether);
+    constexpr int                                                 kLoads = loadsOf(kTogether);
     const RowOfShell<kSpan, kTogether, kOdd, Real, Entry, Stored> row(l, entries, x, i);
     const std::ptrdiff_t at = row.fields - x, other = std::ptrdiff_t(2) * l.span * kLoads;
     eachPlace<kTogether>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
@@ -221,7 +222,7 @@ void applyAll(const HostDispatch& d, const Stored* b, int fieldsFrom)
 template <int kSpan, bool kTogether, int kOdd>
 void relaxRow(const ShellLayout& l, const float* entries, const float* b, const float* x, float* changes, int i)
 {
-    constexpr int                                          kLoads = loadsOf(kTogether);
+    constexpr int                                                 kLoads = loadsOf(kTogether);
     const RowOfShell<kSpan, kTogether, kOdd, float, float, float> row(l, entries, x, i);
     const std::ptrdiff_t at = row.fields - x, other = std::ptrdiff_t(2) * l.span * kLoads;
     eachPlace<kTogether>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
@@ -253,7 +254,7 @@ void addChanges(const ShellLayout& l, const float* changes, float* x, int i, int
 template <int kSpan, bool kTogether, int kOdd>
 void relaxZeros(const ShellLayout& l, const float* entries, const float* b, float* x, int i)
 {
-    constexpr int                                          kLoads = loadsOf(kTogether);
+    constexpr int                                                 kLoads = loadsOf(kTogether);
     const RowOfShell<kSpan, kTogether, kOdd, float, float, float> row(l, entries, x, i);
     const std::ptrdiff_t at = row.fields - x, other = std::ptrdiff_t(2) * l.span * kLoads;
     eachPlace<kTogether>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
@@ -294,7 +295,8 @@ struct HalfSweep {
         if (i < 0 || done > l.cellsX) return;
         if (i <= l.cellsX) {
             if (fromZero)
-                odd ? relaxZeros<kSpan, kTogether, 1>(l, entries, b, x, i) : relaxZeros<kSpan, kTogether, 0>(l, entries, b, x, i);
+                odd ? relaxZeros<kSpan, kTogether, 1>(l, entries, b, x, i)
+                    : relaxZeros<kSpan, kTogether, 0>(l, entries, b, x, i);
             else
                 odd ? relaxRow<kSpan, kTogether, 1>(l, entries, b, x, waiting(i), i)
                     : relaxRow<kSpan, kTogether, 0>(l, entries, b, x, waiting(i), i);
@@ -308,8 +310,8 @@ struct HalfSweep {
 template <int kSpan, bool kTogether>
 void smoothKnown(const HostDispatch& d)
 {
-    using Sweep                        = HalfSweep<kSpan, kTogether>;
-    constexpr int                      kBehind = 2 * kShellRim; // rows that a half sweep reads, and changes, to one side
+    using Sweep           = HalfSweep<kSpan, kTogether>;
+    constexpr int kBehind = 2 * kShellRim; // rows that a half sweep reads, and changes, to one side
     static thread_local Scratch<float> scratch;
     const ShellPush&                   push    = pushed<ShellPush>(d);
     const ShellLayout&                 l       = push.layout;
@@ -360,9 +362,9 @@ void sumRows(const float* entry, const float* from, std::ptrdiff_t row, float* t
 template <int kMost, bool kTogether>
 [[gnu::always_inline]] inline void sumNodes(const float* entry, const float* from, int fromSpan, float* to)
 {
-    constexpr int                                             kLoads = loadsOf(kTogether);
+    constexpr int                                         kLoads = loadsOf(kTogether);
     std::conditional_t<kTogether, Together<float>, float> sum(0.0F);
-    const int                                                 first = int(entry[0]);
+    const int                                             first = int(entry[0]);
     for (int m = 0; m < kMost; ++m) {
         if (entry[1 + m] == 0) continue;
         const float* at = from + std::ptrdiff_t(placeOf(first + m, fromSpan)) * kLoads;
@@ -383,9 +385,9 @@ void prolongOf(const HostDispatch& d)
     const ShellLayout &                fine = push.layout, &coarse = push.coarse;
     const float*                       from = bound<const float>(d, 4);
     float*                             to   = bound<float>(d, 5);
-    const std::ptrdiff_t               row = std::ptrdiff_t(2) * fine.span * kLoads,
-                         fromRow = rowOfFields(coarse) * kLoads, toRow = rowOfFields(fine) * kLoads;
-    float* between = scratch.of((coarse.cellsX + 1) * row);
+    const std::ptrdiff_t row = std::ptrdiff_t(2) * fine.span * kLoads, fromRow = rowOfFields(coarse) * kLoads,
+                         toRow = rowOfFields(fine) * kLoads;
+    float* between             = scratch.of((coarse.cellsX + 1) * row);
     for (int field = 0; field < 2; ++field) {
         const float *tableX = bound<const float>(d, field), *tableZ = bound<const float>(d, 2 + field);
         for (int i = 0; i <= coarse.cellsX; ++i) {
@@ -414,9 +416,9 @@ void restrictOf(const HostDispatch& d)
     const ShellLayout &                fine = push.layout, &coarse = push.coarse;
     const float*                       from = bound<const float>(d, 4);
     float*                             to   = bound<float>(d, 5);
-    const std::ptrdiff_t               row = std::ptrdiff_t(2) * fine.span * kLoads,
-                         fromRow = rowOfFields(fine) * kLoads, toRow = rowOfFields(coarse) * kLoads;
-    float* between = scratch.of(row);
+    const std::ptrdiff_t row = std::ptrdiff_t(2) * fine.span * kLoads, fromRow = rowOfFields(fine) * kLoads,
+                         toRow = rowOfFields(coarse) * kLoads;
+    float* between             = scratch.of(row);
     for (int field = 0; field < 2; ++field) {
         const float *tableX = bound<const float>(d, field) + std::ptrdiff_t(kFineStride) * (fine.cellsX + 1),
                     *tableZ = bound<const float>(d, 2 + field) + std::ptrdiff_t(kFineStride) * (fine.cellsZ + 1);
@@ -496,7 +498,8 @@ void solveBandOf(const HostDispatch& d)
     double* const                       y = scratch.of(std::ptrdiff_t(p.unknowns + stride + kLanes) * kLoads);
     for (int u = 0; u < p.unknowns; ++u)
         for (int n = 0; n < kLoads; ++n) y[u * kLoads + n] = double(b[p.places[u] * kLoads + n]);
-    for (std::ptrdiff_t n = std::ptrdiff_t(p.unknowns) * kLoads; n < std::ptrdiff_t(p.unknowns + stride + kLanes) * kLoads; ++n)
+    for (std::ptrdiff_t n = std::ptrdiff_t(p.unknowns) * kLoads;
+         n < std::ptrdiff_t(p.unknowns + stride + kLanes) * kLoads; ++n)
         y[n] = 0;
     solveLower<kTogether>(factors, y, p.unknowns, band);
     for (int c = p.unknowns - 1; c >= 0; --c) {

@@ -58,18 +58,18 @@ inline constexpr int kShellRim = 2; ///< empty rows before the first and behind 
 /// One level's maps as the host's kernels see them, the last index along z fastest.
 struct ShellMaps {
     shared::PlateLevel bending, stress;
-    const float *      rigidity, *compliance;               ///< over their means [1]
-    const float*       shape;                               ///< of the foundation; null: 1
+    const float *      rigidity, *compliance;                 ///< over their means [1]
+    const float*       shape;                                 ///< of the foundation; null: 1
     const float *      curvatureX, *curvatureZ, *curvatureXZ; ///< times what makes them entries [1]
 };
 
 /// What kernels of shells are pushed.
 struct ShellPush {
     ShellLayout layout{}, coarse{}; ///< the second one for transfers alone
-    int         colour    = 0;      ///< whose nodes are relaxed first
+    int         colour     = 0;     ///< whose nodes are relaxed first
     int         halfSweeps = 0;
-    bool        fromZero  = false;  ///< the fields are 0 before, whatever is in memory
-    bool        toDoubles = false;  ///< coefficients are wanted in doubles
+    bool        fromZero   = false; ///< the fields are 0 before, whatever is in memory
+    bool        toDoubles  = false; ///< coefficients are wanted in doubles
 };
 
 /// A matrix of a band for L D L' without pivots: at [column * (halfBand + 1) + below].

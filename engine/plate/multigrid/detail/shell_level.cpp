@@ -82,9 +82,14 @@ void assemble(ShellLevel& level, const LevelMaps& maps, bool exact, const HostKe
     const std::size_t entries = entriesOf(level.layout), doubles = exact ? entries : 0;
     if (level.entries.size() != entries) level.entries.assign(entries, 0);
     if (level.exact.size() != doubles) level.exact.assign(doubles, 0);
-    ShellMaps seen{level.bending,          level.stress,           maps.rigidity.data(),
-                   maps.compliance.data(), maps.shape.empty() ? nullptr : maps.shape.data(),
-                   maps.curvatureX.data(), maps.curvatureZ.data(), maps.curvatureXZ.data()};
+    ShellMaps seen{level.bending,
+                   level.stress,
+                   maps.rigidity.data(),
+                   maps.compliance.data(),
+                   maps.shape.empty() ? nullptr : maps.shape.data(),
+                   maps.curvatureX.data(),
+                   maps.curvatureZ.data(),
+                   maps.curvatureXZ.data()};
     callHost(kernels.shellEntries, ShellPush{.layout = level.layout, .toDoubles = exact},
              {&seen, level.entries.data(), level.exact.data()});
 }
@@ -168,7 +173,7 @@ void ShellCoarseSolver::number(const ShellLevel& level)
 {
     const ShellLayout& l    = level.layout;
     const bool         free = level.stress.free == (kSideX0 | kSideX1 | kSideZ0 | kSideZ1);
-    const auto pinned = [&](int i, int j) { // a stress function that no side holds is known but for a linear one
+    const auto pinned       = [&](int i, int j) { // a stress function that no side holds is known but for a linear one
         return free && (i == 0 || i == l.cellsX) && (j == 0 || j == l.cellsZ) && !(i > 0 && j > 0);
     };
     places_.clear();
@@ -185,7 +190,7 @@ void ShellCoarseSolver::number(const ShellLevel& level)
                 unknowns_[std::size_t(2 * (i * (l.cellsZ + 1) + j) + field)] = int(places_.size());
                 places_.push_back(placeIn(l, i, j, field));
             }
-    halfBand_ = 1;
+    halfBand_        = 1;
     const auto reach = [&](int i, int j) { // to the last unknown that the node shares an entry with
         for (int field = 0; field < 2; ++field)
             for (const SharedEntry& e : kOwn) {
@@ -225,9 +230,8 @@ void ShellCoarseSolver::collect(const ShellLevel& level)
             for (const SharedEntry& e : kOwn) {
                 if (!inside(e)) continue;
                 for (int field = 0; field < 2; ++field) { // a change between two nodes pulls at both
-                    const double k =
-                        (field == 0 ? 1 : -1) *
-                        level.exactAt(ShellPlane(e.plane + (field == 0 ? kBendEast : kStressEast)), i, j);
+                    const double k = (field == 0 ? 1 : -1) *
+                                     level.exactAt(ShellPlane(e.plane + (field == 0 ? kBendEast : kStressEast)), i, j);
                     add(i, j, field, i + e.di, j + e.dj, field, k);
                     add(i, j, field, i, j, field, -k);
                     add(i + e.di, j + e.dj, field, i + e.di, j + e.dj, field, -k);
@@ -244,8 +248,7 @@ void ShellCoarseSolver::collect(const ShellLevel& level)
 
 void ShellCoarseSolver::solve(const HostKernels& kernels, const float* b, float* x) const
 {
-    callHost(kernels.shellBandSolve, BandPush{int(places_.size()), halfBand_, places_.data()},
-             {factors_.data(), b, x});
+    callHost(kernels.shellBandSolve, BandPush{int(places_.size()), halfBand_, places_.data()}, {factors_.data(), b, x});
 }
 
 } // namespace palp

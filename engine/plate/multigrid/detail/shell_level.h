@@ -19,11 +19,11 @@ namespace palp {
 
 /// One level of the multigrid of a shell, assembled: a map is used for many steps and loads.
 struct ShellLevel {
-    ShellLayout                        layout{};
-    shared::PlateLevel                 bending{}, stress{};
-    std::vector<float>                 entries; ///< see ShellLayout; the cycle's
-    std::vector<double>                exact;   ///< the same in doubles, of the finest level and the coarsest one
-    std::array<std::vector<float>, 4>  tables;  ///< to the next coarser level: w along x, phi, w along z, phi
+    ShellLayout                       layout{};
+    shared::PlateLevel                bending{}, stress{};
+    std::vector<float>                entries; ///< see ShellLayout; the cycle's
+    std::vector<double>               exact;   ///< the same in doubles, of the finest level and the coarsest one
+    std::array<std::vector<float>, 4> tables;  ///< to the next coarser level: w along x, phi, w along z, phi
 
     /// Returns a coefficient in doubles.
     [[nodiscard]] double exactAt(ShellPlane plane, int i, int j) const noexcept;
@@ -46,8 +46,8 @@ public:
 
 private:
     [[nodiscard]] int numberOf(const ShellLayout& layout, int i, int j, int field) const noexcept;
-    void number(const ShellLevel& level);
-    void collect(const ShellLevel& level);
+    void              number(const ShellLevel& level);
+    void              collect(const ShellLevel& level);
 
     std::vector<int>            unknowns_; ///< by node, w before phi: its number in the order of elimination, or -1
     std::vector<std::ptrdiff_t> places_;   ///< of unknowns in a field
