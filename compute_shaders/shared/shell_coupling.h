@@ -11,8 +11,9 @@
 //
 // Undivided differences need no number of the level but the ratio of its spacings: coarser levels use the same values.
 //
-// The includer provides, for nodes of the grid,  float curvatureX(int i, int j),  curvatureZ  and  curvatureXZ.
-// Include plate_grid.h first.
+// With g the share of a node in a cell's area times -kz hz/hx, and h the same of -kx hx/hz, the row of w at a node is
+//
+//     g dxx phi + h dzz phi + sum over its four cells of 1/2 cellTwist t,     t = phi00 - phi10 - phi01 + phi11
 //
 // Source   Marguerre 1938, linear part
 
@@ -27,36 +28,8 @@ real secondDifferenceEntry(int n, int step, int cells, bool hingedFirst, bool hi
     return (step > 0) == first ? real(2.0f) : real(0.0f);
 }
 
-// The twist of a cell's four nodes, times the mean curvature there; 0 outside.
-real cellTwist(PlateLevel g, int i, int j)
+// The mean curvature kxz of a cell, from its four nodes.
+real cellTwist(real k00, real k10, real k01, real k11)
 {
-    if (i < 0 || j < 0 || i >= g.cellsX || j >= g.cellsZ) return real(0.0f);
-    return real(0.25f) * ((real(curvatureXZ(i, j)) + real(curvatureXZ(i + 1, j))) +
-                          (real(curvatureXZ(i, j + 1)) + real(curvatureXZ(i + 1, j + 1))));
-}
-
-// Entry of the row of w(i, j) for phi(i + di, j + dj), di and dj from -1 to 1; `stress` is the level of phi.
-real couplingEntry(PlateLevel stress, int i, int j, int di, int dj)
-{
-    real shareX = i == 0 || i == stress.cellsX ? real(0.5f) : real(1.0f),
-         shareZ = j == 0 || j == stress.cellsZ ? real(0.5f) : real(1.0f);
-    real ratio  = sqrt(real(stress.kxx) / real(stress.kzz)); // hz^2 / hx^2
-    real slim   = sqrt(ratio);                               // hz / hx
-    real entry  = real(0.0f);
-    if (dj == 0)
-        entry -= real(curvatureZ(i, j)) * shareX * shareZ * slim *
-                 secondDifferenceEntry(i, di, stress.cellsX, (stress.hinged & kSideX0) != 0u,
-                                       (stress.hinged & kSideX1) != 0u);
-    if (di == 0)
-        entry -= real(curvatureX(i, j)) * shareX * shareZ / slim *
-                 secondDifferenceEntry(j, dj, stress.cellsZ, (stress.hinged & kSideZ0) != 0u,
-                                       (stress.hinged & kSideZ1) != 0u);
-    for (int m = -1; m <= 0; ++m)
-        for (int n = -1; n <= 0; ++n) { // the cells around (i, j) that hold (i + di, j + dj)
-            int u = di - m, v = dj - n;
-            if (u < 0 || u > 1 || v < 0 || v > 1) continue;
-            real sign = u == v ? real(1.0f) : real(-1.0f);
-            entry += real(0.5f) * sign * cellTwist(stress, i + m, j + n);
-        }
-    return entry;
+    return real(0.25f) * ((k00 + k10) + (k01 + k11));
 }

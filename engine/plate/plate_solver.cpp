@@ -36,12 +36,14 @@ std::string stoppedAt(const SolveReport& report)
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
 }
 
+constexpr std::size_t kMostKeptNodes = 129 * 129; ///< of a shell whose solver's memory is kept: some 20 MB
+
 /// Solves for footprints on a shell on the host: the whole one to the tolerance, and the others to its square root, so
 /// that their works are right to it.
-FootprintSolution byHost(const Shell& shell, std::span<const Footprint> loads, std::size_t whole, double tolerance)
+FootprintSolution byHost(MultigridShellSolver& solver, const Shell& shell, std::span<const Footprint> loads,
+                         std::size_t whole, double tolerance)
 {
     constexpr double       kLoosest = 1e-2; // as of a plate's footprints [1]
-    MultigridShellSolver   solver(shell);
     std::vector<NodeField> others;
     for (std::size_t n = 0; n < loads.size(); ++n)
         if (n != whole) others.push_back(loads[n].load(shell.bending.grid));
@@ -529,7 +531,14 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     FootprintSolution solution;
     if (processor_) {
-        solution = byHost(shell, loads, whole, tolerance);
+        // The solver is kept, because memory that is made anew for each patch costs as much as a set-up.
+        std::unique_ptr<MultigridShellSolver> solver = std::move(shells_);
+        if (solver)
+            solver->setShell(shell);
+        else
+            solver = std::make_unique<MultigridShellSolver>(shell);
+        solution = byHost(*solver, shell, loads, whole, tolerance);
+        if (shell.bending.grid.nodes() <= kMostKeptNodes) shells_ = std::move(solver);
         if (!processor_->isHost()) note_ = name_ + " has no kernels for shells yet";
     }
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {

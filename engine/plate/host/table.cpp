@@ -20,6 +20,9 @@ void rimFirst(const compute::HostDispatch& d);
 void rimLast(const compute::HostDispatch& d);
 void rimStart_f32(const compute::HostDispatch& d);
 void rimStart_f64(const compute::HostDispatch& d);
+#define PALPATE_SHELL(name) void name(const compute::HostDispatch& d);
+#define PALPATE_SHELL_FIELDS(name) void name(const compute::HostDispatch& d);
+#include "engine/plate/host/shell_kernels.def"
 
 extern const HostKernels kTable, kTogether;
 
@@ -34,7 +37,11 @@ constexpr HostKernels kTable{
     .rimFirst     = &rimFirst,
     .rimLast      = &rimLast,
     .rimStart_f32 = &rimStart_f32,
-    .rimStart_f64 = &rimStart_f64};
+    .rimStart_f64 = &rimStart_f64,
+#define PALPATE_SHELL(name) .name = &name,
+#define PALPATE_SHELL_FIELDS(name) .name = &name,
+#include "engine/plate/host/shell_kernels.def"
+};
 
 // The same, with those on fields for several loads. What is prepared for a rigidity, and scalars, have no fields.
 #define PALPATE_TOGETHER(name)                                                                                         \
@@ -68,6 +75,9 @@ constexpr HostKernels kTogether = [] {
     PALPATE_TOGETHER(rimFirst)
     PALPATE_TOGETHER(rimLast)
     PALPATE_REALS_TOGETHER(rimStart)
+#define PALPATE_SHELL(name)
+#define PALPATE_SHELL_FIELDS(name) PALPATE_TOGETHER(name)
+#include "engine/plate/host/shell_kernels.def"
     return all;
 }();
 

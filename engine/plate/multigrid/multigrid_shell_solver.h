@@ -20,9 +20,12 @@ struct ShellAnswer {
 /// Solves thin shallow shells by multigrid on the host: conjugate gradients on both fields together, preconditioned by one
 /// symmetric V cycle whose relaxation changes both fields of a node at once.
 ///
-/// It is in doubles, on assembled rows, by eight loads at a time. The matrix is indefinite, so that conjugate gradients
-/// minimise nothing; the products of their formulas may be negative, and steps are as many as the plate takes, or two
-/// more (7 at most to 1e-4 in the compliance, for discs of 100), however many cells there are and however curved it is.
+/// The cycle is in floats on assembled rows, conjugate gradients and their operator are in doubles; loads are taken by
+/// eights, whose fields are floats then. The matrix is indefinite, so that conjugate gradients minimise nothing; the
+/// products of their formulas may be negative, and steps are as many as the plate takes, or two more (7 at most to 1e-4
+/// in the compliance, for discs of 100), however many cells there are and however curved it is. They start from nested
+/// iteration. The bits are the same on every instruction set. Beyond sharp contrasts of some thousands, such as of nodes
+/// that stand for nothing, they may not converge, and the report says so.
 /// Vulkan has no kernels for it yet.
 /// \thread one at a time
 /// \source Marguerre 1938; Brandt & Dinar 1979, collective relaxation; Hestenes & Stiefel 1952
@@ -33,6 +36,10 @@ public:
     ~MultigridShellSolver();
     MultigridShellSolver(MultigridShellSolver&&) noexcept;
     MultigridShellSolver& operator=(MultigridShellSolver&&) noexcept;
+
+    /// Goes on with another shell; on the same grid no memory is made anew.
+    /// \throws Error if whyUnsolvable(shell) says so: the shell before stays
+    void setShell(const Shell& shell);
 
     /// Solves for forces at the nodes [N]. Forces on held nodes have no effect.
     /// \param tolerance  of the report's estimate, relative [1]; works are right to its square

@@ -1,30 +1,20 @@
 #include "engine/plate/multigrid/detail/shell_level.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <utility>
 
 #include "engine/core/extremes.h"
+#include "engine/plate/multigrid/detail/host_call.h"
 
 namespace palp {
 namespace {
 
 using namespace shared;
 
-using real = double;
-using std::abs;
-using std::max;
 using std::sqrt;
 
 #include "compute_shaders/shared/plate_grid.h"
-#include "compute_shaders/shared/shell_relax.h"
-
-/// Bounds of the relaxation: see compute_shaders/shared/plate_relax.h, whose words these are in doubles.
-double divisorOf(double diagonal, double sameColour)
-{
-    return max(diagonal / 1.1, 0.51 * (diagonal + sameColour));
-}
 
 /// What varies over a level, relative to its means; in floats, as kernels have it.
 struct LevelMaps {
@@ -34,31 +24,13 @@ struct LevelMaps {
 
 /// Reads maps as the shared headers ask for them.
 struct Coarsening {
-    int                       fineNodesZ;
-    const std::vector<float>* fine;
+    int          fineNodesZ;
+    const float* fine;
 
-    [[nodiscard]] float fineRigidity(int i, int j) const
-    {
-        return (*fine)[std::size_t(i) * std::size_t(fineNodesZ) + std::size_t(j)];
-    }
+    [[nodiscard]] float fineRigidity(int i, int j) const { return fine[std::ptrdiff_t(i) * fineNodesZ + j]; }
     [[nodiscard]] float fineShape(int i, int j) const { return fineRigidity(i, j); }
 
 #include "compute_shaders/shared/rigidity_coarsen.h"
-};
-
-struct Coupling {
-    int              nodesZ;
-    const LevelMaps& maps;
-
-    [[nodiscard]] float of(const std::vector<float>& map, int i, int j) const
-    {
-        return map[std::size_t(i) * std::size_t(nodesZ) + std::size_t(j)];
-    }
-    [[nodiscard]] float curvatureX(int i, int j) const { return of(maps.curvatureX, i, j); }
-    [[nodiscard]] float curvatureZ(int i, int j) const { return of(maps.curvatureZ, i, j); }
-    [[nodiscard]] float curvatureXZ(int i, int j) const { return of(maps.curvatureXZ, i, j); }
-
-#include "compute_shaders/shared/shell_coupling.h"
 };
 
 enum class Mean { geometric, arithmetic };
@@ -66,7 +38,7 @@ enum class Mean { geometric, arithmetic };
 std::vector<float> coarser(const std::vector<float>& fine, const PlateLevel& from, const PlateLevel& to, Mean mean)
 {
     if (fine.empty()) return {};
-    Coarsening         coarsening{from.cellsZ + 1, &fine};
+    Coarsening         coarsening{from.cellsZ + 1, fine.data()};
     std::vector<float> coarse;
     coarse.reserve(nodesOf(to));
     for (int i = 0; i <= to.cellsX; ++i)
@@ -92,173 +64,74 @@ std::vector<float> scaled(const NodeField& field, double factor)
     return result;
 }
 
-/// A difference of a few nodes near a node.
-struct Stencil {
-    std::size_t             count = 0;
-    std::array<NodeStep, 4> node{};
-    std::array<double, 4>   factor{};
+ShellLayout layoutOf(const PlateLevel& level)
+{
+    const int even = level.cellsZ / 2 + 1;
+    return {level.cellsX, level.cellsZ, (even + 1 + kLoadsTogether - 1) / kLoadsTogether * kLoadsTogether};
+}
 
-    void add(int i, int j, double withFactor)
-    {
-        node[count]     = {i, j};
-        factor[count++] = withFactor;
-    }
+std::size_t entriesOf(const ShellLayout& l)
+{
+    return std::size_t(l.cellsX + 1 + 2 * kShellRim) * std::size_t(kShellPlanes * 2 * l.span);
+}
+
+/// \param exact  whether coefficients are wanted in doubles too
+void assemble(ShellLevel& level, const LevelMaps& maps, bool exact, const HostKernels& kernels)
+{
+    // Empty places are 0 and stay so while the layout does.
+    const std::size_t entries = entriesOf(level.layout), doubles = exact ? entries : 0;
+    if (level.entries.size() != entries) level.entries.assign(entries, 0);
+    if (level.exact.size() != doubles) level.exact.assign(doubles, 0);
+    ShellMaps seen{level.bending,
+                   level.stress,
+                   maps.rigidity.data(),
+                   maps.compliance.data(),
+                   maps.shape.empty() ? nullptr : maps.shape.data(),
+                   maps.curvatureX.data(),
+                   maps.curvatureZ.data(),
+                   maps.curvatureXZ.data()};
+    callHost(kernels.shellEntries, ShellPush{.layout = level.layout, .toDoubles = exact},
+             {&seen, level.entries.data(), level.exact.data()});
+}
+
+/// A neighbour whose entry with a node is kept at the node.
+struct SharedEntry {
+    int plane, di, dj;
 };
-
-/// Collects the entries of one field's own operator from the terms of its energy.
-class PlateEntries {
-public:
-    PlateEntries(const PlateLevel& g, std::vector<ShellRow>& rows, std::array<double, 13> ShellRow::*entries)
-        : g_(g), rows_(rows), entries_(entries)
-    {
-        for (std::size_t n = 0; n < kPlateSteps.size(); ++n) column(kPlateSteps[n]) = n;
-    }
-
-    void addAll(const std::vector<float>& rigidity, const std::vector<float>& shape)
-    {
-        for (int i = 0; i <= g_.cellsX; ++i)
-            for (int j = 0; j <= g_.cellsZ; ++j) {
-                const auto node = std::size_t(i) * std::size_t(g_.cellsZ + 1) + std::size_t(j);
-                addBending(i, j, rigidity[node]);
-                if (g_.bed > 0 && !isHeld(g_, i, j)) {
-                    const double share = (i == 0 || i == g_.cellsX ? 0.5 : 1) * (j == 0 || j == g_.cellsZ ? 0.5 : 1);
-                    entry({i, j}, {i, j}) += double(g_.bed) * share * (shape.empty() ? 1 : double(shape[node]));
-                }
-                if (i == g_.cellsX || j == g_.cellsZ) continue;
-                const std::size_t east = node + std::size_t(g_.cellsZ + 1);
-                addTwist(i, j,
-                         (double(rigidity[node]) + rigidity[node + 1]) + (double(rigidity[east]) + rigidity[east + 1]));
-            }
-    }
-
-private:
-    [[nodiscard]] bool isHinged(int n, int cells, uint first, uint last) const
-    {
-        return (n == 0 && (g_.hinged & first) != 0U) || (n == cells && (g_.hinged & last) != 0U);
-    }
-
-    /// Adds the second difference along one axis at place n of that axis.
-    static Stencil second(int i, int j, NodeStep along, int n, int cells)
-    {
-        Stencil s;
-        s.add(i, j, -2);
-        if (n > 0) s.add(i - along.i, j - along.j, n == cells ? 2 : 1);
-        if (n < cells) s.add(i + along.i, j + along.j, n == 0 ? 2 : 1);
-        return s;
-    }
-
-    void addBending(int i, int j, double rigidity)
-    {
-        const bool   onX = isHinged(i, g_.cellsX, kSideX0, kSideX1), onZ = isHinged(j, g_.cellsZ, kSideZ0, kSideZ1);
-        const double shareX = i == 0 || i == g_.cellsX ? 0.5 : 1, shareZ = j == 0 || j == g_.cellsZ ? 0.5 : 1;
-        if (onX && onZ) return;
-        const Stencil p = second(i, j, {1, 0}, i, g_.cellsX), q = second(i, j, {0, 1}, j, g_.cellsZ);
-        if (onZ) return addProduct(p, p, rigidity * g_.exx * shareX);
-        if (onX) return addProduct(q, q, rigidity * g_.ezz * shareZ);
-        const double share = rigidity * shareX * shareZ;
-        addProduct(p, p, share * g_.kxx);
-        addProduct(q, q, share * g_.kzz);
-        addProduct(p, q, share * g_.kxz);
-        addProduct(q, p, share * g_.kxz);
-    }
-
-    void addTwist(int i, int j, double sumOfRigidities)
-    {
-        Stencil t;
-        t.add(i, j, 1);
-        t.add(i + 1, j, -1);
-        t.add(i, j + 1, -1);
-        t.add(i + 1, j + 1, 1);
-        addProduct(t, t, g_.twist * sumOfRigidities);
-    }
-
-    void addProduct(const Stencil& a, const Stencil& b, double k)
-    {
-        for (std::size_t m = 0; m < a.count; ++m) {
-            if (isHeld(g_, a.node[m].i, a.node[m].j)) continue;
-            for (std::size_t n = 0; n < b.count; ++n)
-                if (!isHeld(g_, b.node[n].i, b.node[n].j)) entry(a.node[m], b.node[n]) += k * a.factor[m] * b.factor[n];
-        }
-    }
-
-    double& entry(NodeStep row, NodeStep to)
-    {
-        ShellRow& at = rows_[std::size_t(row.i) * std::size_t(g_.cellsZ + 1) + std::size_t(row.j)];
-        return (at.*entries_)[column({to.i - row.i, to.j - row.j})];
-    }
-
-    std::size_t& column(NodeStep step) { return columns_[std::size_t(step.i + 2) * 5 + std::size_t(step.j + 2)]; }
-
-    const PlateLevel&      g_;
-    std::vector<ShellRow>& rows_;
-    std::array<double, 13> ShellRow::*entries_;
-    std::array<std::size_t, 25>       columns_{};
-};
-
-void addCoupling(ShellLevel& level, const LevelMaps& maps)
-{
-    Coupling  coupling{level.stress.cellsZ + 1, maps};
-    const int cellsX = level.layout.cellsX, cellsZ = level.layout.cellsZ;
-    for (int i = 0; i <= cellsX; ++i)
-        for (int j = 0; j <= cellsZ; ++j) {
-            if (isHeld(level.bending, i, j)) continue;
-            for (std::size_t n = 0; n < kCouplingSteps.size(); ++n) {
-                const NodeStep step = kCouplingSteps[n];
-                const int      ii = i + step.i, jj = j + step.j;
-                if (ii < 0 || jj < 0 || ii > cellsX || jj > cellsZ || isHeld(level.stress, ii, jj)) continue;
-                const double entry = coupling.couplingEntry(level.stress, i, j, step.i, step.j);
-                level.rows[std::size_t(i) * std::size_t(cellsZ + 1) + std::size_t(j)].wf[n] = entry;
-                const auto back =
-                    std::ranges::find_if(kCouplingSteps, [&](NodeStep s) { return s.i == -step.i && s.j == -step.j; });
-                level.rows[std::size_t(ii) * std::size_t(cellsZ + 1) + std::size_t(jj)]
-                    .fw[std::size_t(back - kCouplingSteps.begin())] = entry;
-            }
-        }
-}
-
-/// Returns the divisor of a field at a node.
-double divisorOf(const std::array<double, 13>& row)
-{
-    double sameColour = 0;
-    for (std::size_t n = 1; n < row.size(); ++n)
-        if ((kPlateSteps[n].i + kPlateSteps[n].j) % 2 == 0) sameColour += abs(row[n]);
-    return divisorOf(row[0], sameColour);
-}
-
-void invertNodes(ShellLevel& level)
-{
-    level.inverses.clear();
-    std::size_t node = 0;
-    for (int i = 0; i <= level.layout.cellsX; ++i)
-        for (int j = 0; j <= level.layout.cellsZ; ++j, ++node) {
-            const ShellRow&    row = level.rows[node];
-            const ShellInverse of  = shellInverse(divisorOf(row.w), divisorOf(row.f), row.wf[0],
-                                                  !isHeld(level.bending, i, j), !isHeld(level.stress, i, j));
-            level.inverses.push_back({of.ww, of.wf, of.ff});
-        }
-}
-
-ShellLevel assembled(const GridHierarchy::Level& bending, const GridHierarchy::Level& stress, const LevelMaps& maps)
-{
-    ShellLevel level{{bending.plate.cellsX, bending.plate.cellsZ},
-                     bending.plate,
-                     stress.plate,
-                     std::vector<ShellRow>(nodesOf(bending.plate)),
-                     {},
-                     bending.tableX,
-                     bending.tableZ,
-                     stress.tableX,
-                     stress.tableZ};
-    PlateEntries(level.bending, level.rows, &ShellRow::w).addAll(maps.rigidity, maps.shape);
-    PlateEntries(level.stress, level.rows, &ShellRow::f).addAll(maps.compliance, {});
-    addCoupling(level, maps);
-    invertNodes(level);
-    return level;
-}
+constexpr std::array<SharedEntry, 6> kOwn{{{kBendEast, 1, 0},
+                                           {kBendNorth, 0, 1},
+                                           {kBendEast2, 2, 0},
+                                           {kBendNorth2, 0, 2},
+                                           {kBendNorthEast, 1, 1},
+                                           {kBendSouthEast, 1, -1}}};
+constexpr std::array<SharedEntry, 8> kCoupled{{{kCoupleEast, 1, 0},
+                                               {kCoupleWest, -1, 0},
+                                               {kCoupleNorth, 0, 1},
+                                               {kCoupleSouth, 0, -1},
+                                               {kCoupleNorthEast, 1, 1},
+                                               {kCoupleNorthWest, -1, 1},
+                                               {kCoupleSouthEast, 1, -1},
+                                               {kCoupleSouthWest, -1, -1}}};
 
 } // namespace
 
-std::vector<ShellLevel> shellLevels(const Shell& shell)
+std::size_t numbersOf(const ShellLayout& l) noexcept
+{
+    return std::size_t(l.cellsX + 1 + 2 * kShellRim) * std::size_t(4 * l.span);
+}
+
+std::ptrdiff_t placeIn(const ShellLayout& l, int i, int j, int field) noexcept
+{
+    return (std::ptrdiff_t(i + kShellRim) * 4 + field * 2 + j % 2) * l.span + j / 2;
+}
+
+double ShellLevel::exactAt(ShellPlane plane, int i, int j) const noexcept
+{
+    const auto row = std::ptrdiff_t(i + kShellRim) * kShellPlanes + plane;
+    return exact[std::size_t((row * 2 + j % 2) * layout.span + j / 2)];
+}
+
+void makeLevels(const Shell& shell, const HostKernels& kernels, std::vector<ShellLevel>& levels)
 {
     const double        rigidity   = geometricMean(shell.bending.rigidity.values());
     const double        compliance = geometricMean(shell.membraneCompliance.values());
@@ -273,92 +146,109 @@ std::vector<ShellLevel> shellLevels(const Shell& shell)
                    scaled(shell.curvatureZ, entry),
                    scaled(shell.curvatureXZ, entry)};
 
-    std::vector<ShellLevel> levels;
-    for (std::size_t n = 0; n < bending.levels.size(); ++n) {
-        if (n > 0) maps = coarser(maps, bending.levels[n - 1].plate, bending.levels[n].plate);
-        levels.push_back(assembled(bending.levels[n], stress.levels[n], maps));
+    levels.resize(bending.levels.size());
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        const GridHierarchy::Level &ofW = bending.levels[n], &ofF = stress.levels[n];
+        if (n > 0) maps = coarser(maps, bending.levels[n - 1].plate, ofW.plate);
+        ShellLevel&       level  = levels[n];
+        const ShellLayout layout = layoutOf(ofW.plate);
+        if (level.layout != layout) level = {};
+        level.layout  = layout;
+        level.bending = ofW.plate;
+        level.stress  = ofF.plate;
+        level.tables  = {ofW.tableX, ofF.tableX, ofW.tableZ, ofF.tableZ};
+        assemble(level, maps, n == 0 || n + 1 == levels.size(), kernels);
     }
-    return levels;
 }
 
-int ShellCoarseSolver::unknownOf(int i, int j, int field) const noexcept
+void ShellCoarseSolver::factorise(const ShellLevel& level, const HostKernels& kernels)
 {
-    const bool alongZ = layout_.cellsZ <= layout_.cellsX; // the shorter side first
-    return 2 * (alongZ ? i * (layout_.cellsZ + 1) + j : j * (layout_.cellsX + 1) + i) + field;
+    number(level);
+    collect(level);
+    callHost(kernels.shellBandFactor, BandPush{int(places_.size()), halfBand_, places_.data()}, {factors_.data()});
 }
 
-ShellCoarseSolver::ShellCoarseSolver(const ShellLevel& level)
-    : layout_(level.layout), unknowns_(2 * int(nodesOf(level.bending))),
-      halfBand_(4 * (std::min(layout_.cellsX, layout_.cellsZ) + 1) + 1),
-      factors_(std::size_t(unknowns_) * std::size_t(halfBand_ + 1))
+/// Numbers what moves, along the shorter side first.
+void ShellCoarseSolver::number(const ShellLevel& level)
 {
-    const auto at = [&](int column, int below) -> double& {
-        return factors_[std::size_t(column) * std::size_t(halfBand_ + 1) + std::size_t(below)];
+    const ShellLayout& l    = level.layout;
+    const bool         free = level.stress.free == (kSideX0 | kSideX1 | kSideZ0 | kSideZ1);
+    const auto pinned       = [&](int i, int j) { // a stress function that no side holds is known but for a linear one
+        return free && (i == 0 || i == l.cellsX) && (j == 0 || j == l.cellsZ) && !(i > 0 && j > 0);
     };
-    const bool free   = level.stress.free == (kSideX0 | kSideX1 | kSideZ0 | kSideZ1);
-    const auto pinned = [&](int i, int j) { // a stress function that no side holds is known but for a linear one
-        return free && (i == 0 || i == layout_.cellsX) && (j == 0 || j == layout_.cellsZ) && !(i > 0 && j > 0);
+    places_.clear();
+    unknowns_.assign(2 * nodesOf(level.bending), -1);
+    const bool alongZ = l.cellsZ <= l.cellsX;
+    const int  slow = alongZ ? l.cellsX : l.cellsZ, fast = alongZ ? l.cellsZ : l.cellsX;
+    for (int a = 0; a <= slow; ++a)
+        for (int b = 0; b <= fast; ++b)
+            for (int field = 0; field < 2; ++field) {
+                const int  i = alongZ ? a : b, j = alongZ ? b : a;
+                const bool moves =
+                    field == 0 ? !isHeld(level.bending, i, j) : !isHeld(level.stress, i, j) && !pinned(i, j);
+                if (!moves) continue;
+                unknowns_[std::size_t(2 * (i * (l.cellsZ + 1) + j) + field)] = int(places_.size());
+                places_.push_back(placeIn(l, i, j, field));
+            }
+    halfBand_        = 1;
+    const auto reach = [&](int i, int j) { // to the last unknown that the node shares an entry with
+        for (int field = 0; field < 2; ++field)
+            for (const SharedEntry& e : kOwn) {
+                const int ii = i + e.di, jj = j + e.dj;
+                if (ii > l.cellsX || jj < 0 || jj > l.cellsZ) continue;
+                const int a = numberOf(l, i, j, field);
+                for (int other = 0; other < 2; ++other)
+                    if (const int b = numberOf(l, ii, jj, other); a >= 0 && b >= 0)
+                        halfBand_ = std::max(halfBand_, std::abs(a - b));
+            }
     };
-    const auto moves = [&](int i, int j, int field) {
-        return field == 0 ? !isHeld(level.bending, i, j) : !isHeld(level.stress, i, j) && !pinned(i, j);
+    for (int i = 0; i <= l.cellsX; ++i)
+        for (int j = 0; j <= l.cellsZ; ++j) reach(i, j);
+}
+
+int ShellCoarseSolver::numberOf(const ShellLayout& l, int i, int j, int field) const noexcept
+{
+    return unknowns_[std::size_t(2 * (i * (l.cellsZ + 1) + j) + field)];
+}
+
+/// Collects the entries below the diagonal, column by column.
+void ShellCoarseSolver::collect(const ShellLevel& level)
+{
+    factors_.assign((places_.size() + 1) * std::size_t(halfBand_ + 1), 0); // and a column of zeros
+    const ShellLayout& l   = level.layout;
+    const auto         add = [&](int i, int j, int field, int ii, int jj, int ofField, double entry) {
+        const int r = numberOf(l, i, j, field), c = numberOf(l, ii, jj, ofField);
+        if (r < 0 || c < 0) return;
+        factors_[std::size_t(std::min(r, c)) * std::size_t(halfBand_ + 1) + std::size_t(std::abs(r - c))] += entry;
     };
-    std::size_t node = 0;
-    for (int i = 0; i <= layout_.cellsX; ++i)
-        for (int j = 0; j <= layout_.cellsZ; ++j, ++node) {
-            const ShellRow& row = level.rows[node];
-            const auto      put = [&](int field, NodeStep step, int ofField, double entry) {
-                const int ii = i + step.i, jj = j + step.j;
-                if (entry == 0 || !moves(i, j, field) || !moves(ii, jj, ofField)) return;
-                const int r = unknownOf(i, j, field), c = unknownOf(ii, jj, ofField);
-                if (r >= c) at(c, r - c) = entry;
+    for (int i = 0; i <= l.cellsX; ++i)
+        for (int j = 0; j <= l.cellsZ; ++j) {
+            add(i, j, 0, i, j, 0, level.exactAt(kBed, i, j));
+            const auto inside = [&](const SharedEntry& e) {
+                return i + e.di >= 0 && i + e.di <= l.cellsX && j + e.dj >= 0 && j + e.dj <= l.cellsZ;
             };
-            for (std::size_t n = 0; n < kPlateSteps.size(); ++n) {
-                put(0, kPlateSteps[n], 0, row.w[n]);
-                put(1, kPlateSteps[n], 1, -row.f[n]);
+            for (const SharedEntry& e : kOwn) {
+                if (!inside(e)) continue;
+                for (int field = 0; field < 2; ++field) { // a change between two nodes pulls at both
+                    const double k = (field == 0 ? 1 : -1) *
+                                     level.exactAt(ShellPlane(e.plane + (field == 0 ? kBendEast : kStressEast)), i, j);
+                    add(i, j, field, i + e.di, j + e.dj, field, k);
+                    add(i, j, field, i, j, field, -k);
+                    add(i + e.di, j + e.dj, field, i + e.di, j + e.dj, field, -k);
+                }
             }
-            for (std::size_t n = 0; n < kCouplingSteps.size(); ++n) {
-                put(0, kCouplingSteps[n], 1, row.wf[n]);
-                put(1, kCouplingSteps[n], 0, row.fw[n]);
+            for (const SharedEntry& e : kCoupled) {
+                if (!inside(e)) continue;
+                const double k = level.exactAt(ShellPlane(e.plane), i, j);
+                add(i, j, 0, i + e.di, j + e.dj, 1, k);
+                add(i, j, 0, i, j, 1, -k);
             }
         }
-    for (int c = 0; c < unknowns_; ++c) {
-        const double inverse = at(c, 0) == 0 ? 0 : 1 / at(c, 0); // an unknown that does not move stays 0
-        const int    last    = std::min(halfBand_, unknowns_ - 1 - c);
-        for (int m = 1; m <= last; ++m) {
-            const double l = at(c, m) * inverse;
-            if (l == 0) continue;
-            for (int n = m; n <= last; ++n) at(c + m, n - m) -= l * at(c, n);
-        }
-        for (int m = 1; m <= last; ++m) at(c, m) *= inverse;
-        at(c, 0) = inverse;
-    }
 }
 
-void ShellCoarseSolver::solve(const double* b, double* x, int loads) const
+void ShellCoarseSolver::solve(const HostKernels& kernels, const float* b, float* x) const
 {
-    std::vector<double> y(std::size_t(unknowns_) * std::size_t(loads));
-    const auto          each = [&](const auto& visit) {
-        for (int i = 0; i <= layout_.cellsX; ++i)
-            for (int j = 0; j <= layout_.cellsZ; ++j)
-                for (int field = 0; field < 2; ++field)
-                    visit((layout_.at(i, j) * 2 + field) * loads, std::ptrdiff_t(unknownOf(i, j, field)) * loads);
-    };
-    const auto row = [&](int unknown) { return y.data() + std::ptrdiff_t(unknown) * loads; };
-    each([&](std::ptrdiff_t from, std::ptrdiff_t to) { std::copy_n(b + from, loads, y.begin() + to); });
-    for (int c = 0; c < unknowns_; ++c) {
-        const double* l    = factors_.data() + std::ptrdiff_t(c) * (halfBand_ + 1);
-        const int     last = std::min(halfBand_, unknowns_ - 1 - c);
-        for (int m = 1; m <= last; ++m)
-            for (int n = 0; n < loads; ++n) row(c + m)[n] -= l[m] * row(c)[n];
-    }
-    for (int c = unknowns_ - 1; c >= 0; --c) {
-        const double* l    = factors_.data() + std::ptrdiff_t(c) * (halfBand_ + 1);
-        const int     last = std::min(halfBand_, unknowns_ - 1 - c);
-        for (int n = 0; n < loads; ++n) row(c)[n] *= l[0];
-        for (int m = 1; m <= last; ++m)
-            for (int n = 0; n < loads; ++n) row(c)[n] -= l[m] * row(c + m)[n];
-    }
-    each([&](std::ptrdiff_t to, std::ptrdiff_t from) { std::copy_n(y.begin() + from, loads, x + to); });
+    callHost(kernels.shellBandSolve, BandPush{int(places_.size()), halfBand_, places_.data()}, {factors_.data(), b, x});
 }
 
 } // namespace palp
