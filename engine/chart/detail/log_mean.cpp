@@ -379,7 +379,7 @@ void meansPortable(const double* weight, const double* logarithm, std::span<doub
 }
 #if defined(__x86_64__)
 // Products and sums stay apart, so that every processor gives the same bits.
-#define PALPATE_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl,prefer-vector-width=512")))
+#define PALPATE_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl")))
 template <std::size_t kValues>
 __attribute__((target("avx2"))) void spreadAvx2(const Task<kValues>& task)
 {
