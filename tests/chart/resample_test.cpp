@@ -1,5 +1,7 @@
 #include "engine/chart/resample.h"
 
+#include "engine/chart/detail/log_mean.h"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -113,7 +115,6 @@ TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
         }
 }
 
-/// Why the kernel is the default: move the window over the same points and watch one place of the object.
 /// Dense points, whose squares hold 4 x 4 nodes, sparse ones, whose squares hold more, and points with a hole; one, two
 /// and three quantities.
 TEST(Resample, SeveralQuantitiesAreEachWhatTheyWouldBeAlone)
@@ -141,6 +142,30 @@ TEST(Resample, SeveralQuantitiesAreEachWhatTheyWouldBeAlone)
             }
 }
 
+/// Registers of two, four and eight numbers: squares of 4 x 4 nodes, of some 12 that begin anywhere in a register, and of
+/// so many that a point's factors do not stay in registers.
+TEST(Resample, EveryInstructionSetGivesTheSameBits)
+{
+    for (const int cells : {18, 64, 200})
+        for (const std::size_t quantities : {1, 2}) {
+            const PatchWindow window = PatchWindow::square(0.03, cells);
+            const Scatter     s = scatter(0.03, 4000, 5, [](const ChartPoint& p) { return 2 + std::sin(300 * p.x); });
+            const std::vector<PointValues> values(quantities, PointValues(s.rigidities));
+            const double        width = std::max(cells == 200 ? 3 * s.spacing : s.spacing, 0.5 * window.grid.spacingX);
+            const LogMeanSums   portable(window, s.positions, values, width, Instructions::portable);
+            std::vector<double> expected(std::size_t(cells + 1)), found(expected);
+            for (const Instructions with : logMeanInstructions()) {
+                const LogMeanSums sums(window, s.positions, values, width, with);
+                for (int i = 0; i <= cells; ++i) {
+                    portable.means(i, quantities - 1, expected);
+                    sums.means(i, quantities - 1, found);
+                    ASSERT_EQ(found, expected) << cells << " cells, row " << i << ", set " << int(with);
+                }
+            }
+        }
+}
+
+/// Why the kernel is the default: move the window over the same points and watch one place of the object.
 TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
 {
     const Scatter s      = scatter(1, 2000, 4, [](const ChartPoint& p) { return std::exp(2.3 * std::tanh(8 * p.x)); });

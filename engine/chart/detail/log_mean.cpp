@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <string>
 
@@ -22,13 +23,21 @@
 // Exponents stay below 32, so powers lose no more than some 50 units in the last place.
 //
 // Where points are dense, the square holds 4 x 4 nodes, and points follow each other along a curve: then the sums of
-// those which reach the same nodes are made in registers.
+// those which reach the same nodes are made in registers. Elsewhere a point's factors along z stay in registers while
+// rows go by; they begin where a register of the sums does, because one that lies across two lines of the cache takes
+// twice as long. Each sum adds its points in their order, however wide registers are: bits do not depend on that.
 
 namespace palp {
 namespace {
 
-constexpr int  kLanes = 4;
+constexpr int  kLanes     = 4;
+constexpr int  kMostLanes = 8; ///< of the widest registers
 typedef double Numbers __attribute__((vector_size(8 * kLanes)));
+
+template <int kWide>
+struct Register {
+    typedef double Type __attribute__((vector_size(8 * kWide)));
+};
 #define PALPATE_PART [[gnu::always_inline]] inline
 
 /// Returns exp(x) to 1e-15 for |x| < 700, without branches, so that loops of it become vector instructions.
@@ -151,22 +160,49 @@ struct Task {
 std::vector<double> tableOf(double spacing, double width, int nodes)
 {
     const int           most = std::min(nodes, int(2 * kResamplingReach * width / spacing) + 2);
-    std::vector<double> table(std::size_t(most + kLanes));
+    std::vector<double> table(std::size_t(most + kMostLanes));
     for (int m = 0; m < most; ++m)
         table[std::size_t(m)] = std::exp(-(m * spacing) * (m * spacing) / (2 * width * width));
     return table;
 }
 
-PALPATE_PART void addRow(double factor, const double* factors, int registers, double* sums)
-{
-    for (int v = 0; v < registers * kLanes; v += kLanes) {
-        Numbers f, s;
-        std::memcpy(&f, factors + v, sizeof f);
-        std::memcpy(&s, sums + v, sizeof s);
-        s += factor * f;
-        std::memcpy(sums + v, &s, sizeof s);
+/// The weights of one point, and those times each logarithm, along z.
+/// \tparam kWide  numbers in a register
+template <std::size_t kSums, int kWide>
+struct FactorsAlongZ {
+    double*     numbers; ///< of all sums; the first node of a register of the sums is the first number [1]
+    std::size_t margin;  ///< numbers of one sum
+
+    /// Adds them times the factors of some rows, `kCount` registers of each.
+    template <int kCount>
+    PALPATE_PART void addTo(double* sums, std::size_t stride, const double* alongX, int rows) const
+    {
+        using Wide = typename Register<kWide>::Type;
+        Wide factors[kSums][kCount];
+        for (std::size_t s = 0; s < kSums; ++s) std::memcpy(factors[s], numbers + s * margin, sizeof factors[s]);
+        for (int r = 0; r < rows; ++r)
+            for (std::size_t s = 0; s < kSums; ++s, sums += stride)
+                for (int v = 0; v < kCount; ++v) {
+                    Wide there;
+                    std::memcpy(&there, sums + v * kWide, sizeof there);
+                    there += alongX[r] * factors[s][v];
+                    std::memcpy(sums + v * kWide, &there, sizeof there);
+                }
     }
-}
+    /// Does the same for any number of registers.
+    PALPATE_PART void addAllTo(double* sums, std::size_t stride, const double* alongX, int rows, int registers) const
+    {
+        FactorsAlongZ left = *this;
+        for (; registers > kAtOnce; registers -= kAtOnce, sums += kAtOnce * kWide, left.numbers += kAtOnce * kWide)
+            left.template addTo<kAtOnce>(sums, stride, alongX, rows);
+        if (registers == 1) left.template addTo<1>(sums, stride, alongX, rows);
+        if (registers == 2) left.template addTo<2>(sums, stride, alongX, rows);
+        if (registers == 3) left.template addTo<3>(sums, stride, alongX, rows);
+        if (registers == 4) left.template addTo<4>(sums, stride, alongX, rows);
+    }
+
+    static constexpr int kAtOnce = 4; ///< registers: those of three sums are twelve of the sixteen that there are
+};
 
 /// Sums at 4 x 4 nodes, of points that follow each other.
 template <std::size_t kValues>
@@ -254,21 +290,52 @@ private:
     std::size_t          next_ = 0;
 };
 
-template <std::size_t kValues>
+/// Where the factors of a point are made, of all its sums.
+struct FactorTables {
+    std::vector<double> tableX, tableZ; ///< the factors' parts that points have in common [1]
+    std::size_t         margin;         ///< numbers along z of one sum
+    std::vector<double> numbers;        ///< along x, then along z those of each sum [1]
+
+    FactorTables(const PlateGrid& grid, double width, std::size_t sums)
+        : tableX(tableOf(grid.spacingX, width, grid.nodesX())), tableZ(tableOf(grid.spacingZ, width, grid.nodesZ())),
+          margin((tableZ.size() + 2 * kMostLanes) / kMostLanes * kMostLanes), numbers(tableX.size() + sums * margin)
+    {
+    }
+};
+
+/// Adds one point to the sums of nodes that are more than 4 x 4.
+/// \param alongZ  room for the factors of all sums
+/// \param nearest the weight of the first node, but for the tables [1]
+template <std::size_t kValues, int kWide>
+PALPATE_PART void spreadWide(const Task<kValues>& task, const FactorTables& tables, const Reach& x, const Reach& z,
+                             std::size_t n, double nearest, const std::array<double, kValues>& logarithms,
+                             const double* alongX, double* alongZ)
+{
+    const int before = z.first[n] % kWide; // nodes between the register's first and the point's
+    const int filled =
+        before + kLanes * factorsOf(z.ratio[n], nearest, tables.tableZ.data(), z.count[n], alongZ + before);
+    const int registers = (filled + kWide - 1) / kWide;
+    std::fill(alongZ, alongZ + before, 0.0);
+    std::fill(alongZ + filled, alongZ + registers * kWide, 0.0);
+    for (std::size_t v = 0; v < kValues; ++v)
+        for (int m = 0; m < registers * kWide; ++m)
+            alongZ[(v + 1) * tables.margin + std::size_t(m)] = alongZ[m] * logarithms[v];
+    double* row = task.sums + std::size_t(x.first[n]) * task.kSums * task.stride + std::size_t(z.first[n] - before);
+    FactorsAlongZ<1 + kValues, kWide>{alongZ, tables.margin}.addAllTo(row, task.stride, alongX, x.count[n], registers);
+}
+
+template <std::size_t kValues, int kWide>
 PALPATE_PART void spreadAll(const Task<kValues>& task)
 {
-    const PlateGrid&          grid   = task.window.grid;
-    const std::vector<double> tableX = tableOf(grid.spacingX, task.width, grid.nodesX());
-    const std::vector<double> tableZ = tableOf(grid.spacingZ, task.width, grid.nodesZ());
-    const int                 margin = int(tableZ.size());
-    std::vector<double>       factors(tableX.size() + task.kSums * tableZ.size());
-    double* const             alongX = factors.data();
-    double* const             alongZ = alongX + tableX.size(); // then the same times each logarithm
-    Reach                     x, z;
-    double                    nearest[kPiece]; // the weight of the first node, but for the tables [1]
-    double                    logarithmOf[kValues][kPiece];
-    RunOfPoints<kValues>      run(task);
-    NearPoints<kValues>       near(task);
+    const PlateGrid&     grid = task.window.grid;
+    FactorTables         tables(grid, task.width, task.kSums);
+    double* const        alongX = tables.numbers.data();
+    double* const        alongZ = alongX + tables.tableX.size();
+    Reach                x, z;
+    double               nearest[kPiece]; // the weight of the first node, but for the tables [1]
+    double               logarithmOf[kValues][kPiece];
+    RunOfPoints<kValues> run(task);
+    NearPoints<kValues>  near(task);
     while (const std::size_t count = near.next()) {
         const auto positions = std::span<const ChartPoint>(near.positions, count);
         x.find(positions, &ChartPoint::x, task.window.corner.x, task.width, grid.spacingX, grid.nodesX());
@@ -278,21 +345,15 @@ PALPATE_PART void spreadAll(const Task<kValues>& task)
         for (std::size_t v = 0; v < kValues; ++v) logarithms(near.values[v], logarithmOf[v], count);
         for (std::size_t n = 0; n < count; ++n) {
             if (x.count[n] == 0 || z.count[n] == 0) continue;
-            factorsOf(x.ratio[n], 1, tableX.data(), x.count[n], alongX);
-            const int registers = factorsOf(z.ratio[n], nearest[n], tableZ.data(), z.count[n], alongZ);
-            if (x.count[n] <= kLanes && registers == 1) {
-                std::array<double, kValues> own;
-                for (std::size_t v = 0; v < kValues; ++v) own[v] = logarithmOf[v][n];
-                run.add(x.first[n], z.first[n], alongX, alongZ, own);
+            std::array<double, kValues> own;
+            for (std::size_t v = 0; v < kValues; ++v) own[v] = logarithmOf[v][n];
+            factorsOf(x.ratio[n], 1, tables.tableX.data(), x.count[n], alongX);
+            if (x.count[n] > kLanes || z.count[n] > kLanes) {
+                spreadWide<kValues, kWide>(task, tables, x, z, n, nearest[n], own, alongX, alongZ);
                 continue;
             }
-            for (std::size_t v = 0; v < kValues; ++v)
-                for (int m = 0; m < registers * kLanes; ++m)
-                    alongZ[int(v + 1) * margin + m] = alongZ[m] * logarithmOf[v][n];
-            double* row = task.sums + std::size_t(x.first[n]) * task.kSums * task.stride + std::size_t(z.first[n]);
-            for (int r = 0; r < x.count[n]; ++r)
-                for (std::size_t s = 0; s < task.kSums; ++s, row += task.stride)
-                    addRow(alongX[r], alongZ + int(s) * margin, registers, row);
+            factorsOf(z.ratio[n], nearest[n], tables.tableZ.data(), z.count[n], alongZ);
+            run.add(x.first[n], z.first[n], alongX, alongZ, own);
         }
     }
     run.handOver();
@@ -310,30 +371,41 @@ PALPATE_PART void meansOf(const double* weight, const double* logarithm, std::sp
 template <std::size_t kValues>
 void spreadPortable(const Task<kValues>& task)
 {
-    spreadAll(task);
+    spreadAll<kValues, kLanes>(task);
 }
 void meansPortable(const double* weight, const double* logarithm, std::span<double> row)
 {
     meansOf(weight, logarithm, row);
 }
 #if defined(__x86_64__)
-// Without FMA, so that every processor gives the same bits.
+// Products and sums stay apart, so that every processor gives the same bits.
+#define PALPATE_AVX512 __attribute__((target("avx512f,avx512dq,avx512vl")))
 template <std::size_t kValues>
 __attribute__((target("avx2"))) void spreadAvx2(const Task<kValues>& task)
 {
-    spreadAll(task);
+    spreadAll<kValues, kLanes>(task);
+}
+template <std::size_t kValues>
+PALPATE_AVX512 void spreadAvx512(const Task<kValues>& task)
+{
+    spreadAll<kValues, kMostLanes>(task);
 }
 __attribute__((target("avx2"))) void meansAvx2(const double* weight, const double* logarithm, std::span<double> row)
+{
+    meansOf(weight, logarithm, row);
+}
+PALPATE_AVX512 void meansAvx512(const double* weight, const double* logarithm, std::span<double> row)
 {
     meansOf(weight, logarithm, row);
 }
 #endif
 
 template <std::size_t kValues>
-void spread(const Task<kValues>& task)
+void spread(const Task<kValues>& task, [[maybe_unused]] Instructions with)
 {
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) return spreadAvx2(task);
+    if (with == Instructions::avx512) return spreadAvx512(task);
+    if (with == Instructions::avx2) return spreadAvx2(task);
 #endif
     spreadPortable(task);
 }
@@ -415,24 +487,40 @@ private:
 
 } // namespace
 
+std::vector<Instructions> logMeanInstructions()
+{
+    std::vector<Instructions> all{Instructions::portable};
+#if defined(__x86_64__)
+    if (__builtin_cpu_supports("avx2")) all.push_back(Instructions::avx2);
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl"))
+        all.push_back(Instructions::avx512);
+#endif
+    return all;
+}
+
 LogMeanSums::LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions,
-                         std::span<const PointValues> values, double width)
-    : grid_(window.grid), stride_(std::size_t(grid_.nodesZ() + kLanes)), sumsPerRow_(1 + values.size()),
-      sums_(sumsPerRow_ * std::size_t(grid_.nodesX() + kLanes) * stride_)
+                         std::span<const PointValues> values, double width, Instructions with)
+    : grid_(window.grid), with_(with), stride_(std::size_t(grid_.nodesZ() / kMostLanes + 2) * kMostLanes),
+      sumsPerRow_(1 + values.size()),
+      storage_(sumsPerRow_ * std::size_t(grid_.nodesX() + kLanes) * stride_ + kMostLanes)
 {
     PALP_EXPECT(values.size() == 1 || values.size() == kTogether, std::to_string(values.size()) + " quantities");
+    void*       begin = storage_.data();
+    std::size_t space = storage_.size() * sizeof(double);
+    sums_             = static_cast<double*>(std::align(kMostLanes * sizeof(double), sizeof(double), begin, space));
     if (values.size() == 1)
-        spread(Task<1>{window, positions, {values[0]}, width, stride_, sums_.data()});
+        spread(Task<1>{window, positions, {values[0]}, width, stride_, sums_}, with);
     else
-        spread(Task<2>{window, positions, {values[0], values[1]}, width, stride_, sums_.data()});
+        spread(Task<2>{window, positions, {values[0], values[1]}, width, stride_, sums_}, with);
 }
 
 void LogMeanSums::means(int i, std::size_t quantity, std::span<double> row) const
 {
-    const double* const weight    = sums_.data() + sumsPerRow_ * std::size_t(i) * stride_;
+    const double* const weight    = sums_ + sumsPerRow_ * std::size_t(i) * stride_;
     const double* const logarithm = weight + (1 + quantity) * stride_;
 #if defined(__x86_64__)
-    if (__builtin_cpu_supports("avx2")) return meansAvx2(weight, logarithm, row);
+    if (with_ == Instructions::avx512) return meansAvx512(weight, logarithm, row);
+    if (with_ == Instructions::avx2) return meansAvx2(weight, logarithm, row);
 #endif
     meansPortable(weight, logarithm, row);
 }

@@ -7,6 +7,12 @@
 
 namespace palp {
 
+/// What the sums are compiled for; all give the same bits.
+enum class Instructions { portable, avx2, avx512 };
+
+/// Returns what this processor has, the fastest last.
+[[nodiscard]] std::vector<Instructions> logMeanInstructions();
+
 /// Gaussian-weighted sums at the nodes of a window, of the points in the square of half side kResamplingReach widths
 /// about each; see resampleRigidity().
 class LogMeanSums {
@@ -16,8 +22,12 @@ public:
 
     /// \param values  one to kTogether quantities of the points, > 0, each in a unit of its own
     /// \param width   standard deviation of the Gaussian [m]
+    /// \param with    one of logMeanInstructions()
     LogMeanSums(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const PointValues> values,
-                double width);
+                double width, Instructions with = logMeanInstructions().back());
+    LogMeanSums(const LogMeanSums&)            = delete;
+    LogMeanSums& operator=(const LogMeanSums&) = delete;
+    ~LogMeanSums()                             = default;
 
     /// Computes exp of the mean of the logarithms of one quantity along one row of nodes; not a number where no point
     /// reaches.
@@ -25,9 +35,12 @@ public:
 
 private:
     PlateGrid           grid_;
-    std::size_t         stride_; ///< of a row of one sum, with a margin that whole registers may run into
+    Instructions        with_;
+    std::size_t         stride_; ///< of a row of one sum, whole registers, with a margin that they may run into
     std::size_t         sumsPerRow_;
-    std::vector<double> sums_; ///< for each row of nodes, and a few more, those of w [1], then those of w ln v of each
+    std::vector<double> storage_; ///< of the sums
+    /// For each row of nodes, and a few more, those of w [1], then those of w ln v of each; a row begins with a register.
+    double* sums_ = nullptr;
 };
 
 /// Returns true if a quick test shows that every node of a window has a point nearby, as resampleRigidity() counts it;
