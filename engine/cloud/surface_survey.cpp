@@ -8,6 +8,7 @@
 #include "engine/cloud/detail/local_shape.h"
 #include "engine/cloud/local_spacing.h"
 #include "engine/cloud/neighbourhoods.h"
+#include "engine/cloud/touch_scale.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -48,6 +49,9 @@ constexpr double kClean = 0.1;
 /// edge doubles, but for one ball that just reaches over it.
 constexpr double kSettled = 1.35;
 
+/// The same for one face of a thin body [1]: wider balls about a rim take in more of its bend, slowly.
+constexpr double kSettledOnFace = 1.15;
+
 /// Deviations with a smaller kurtosis are those of the two faces of a thin body [1], which has 1 to 1.4; evenly spread
 /// noise has 1.8.
 constexpr double kTwoFaces = 1.6;
@@ -64,8 +68,13 @@ constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are loo
 /// The survey of some runs of a cloud, all by rank: each thread has its own.
 class SurfaceSurvey::Measuring {
 public:
-    Measuring(SurfaceSurvey& survey, const NeighbourIndex& index)
-        : survey_(survey), positions_(index.positionsByRank()), index_(index), neighbourhoods_(index)
+    /// \param points  by rank
+    /// \param given   normals of the points, if there are any
+    /// \param faces   takes the normals of points on noisy thin bodies [1], by rank
+    Measuring(SurfaceSurvey& survey, const NeighbourIndex& index, std::span<const std::uint32_t> points,
+              std::span<const glm::vec3> given, std::span<glm::vec3> faces)
+        : survey_(survey), positions_(index.positionsByRank()), points_(points), given_(given), faces_(faces),
+          index_(index), neighbourhoods_(index)
     {
     }
 
@@ -76,26 +85,60 @@ public:
 
 private:
     LocalShape shapeWithin(std::uint32_t point, double radius);
+    LocalShape faceWithin(std::uint32_t point, double radius);
+    void       takeAway(std::uint32_t point);
     LocalShape widened(std::uint32_t point, LocalShape shape);
-    float      noiseAbout(std::uint32_t point);
+
+    /// The shape of a wide ball, as far as it is one.
+    struct WideShape {
+        LocalShape    shape;
+        std::uint32_t middle = 0; ///< rank
+        double        radius = 0; ///< [m]
+    };
+    WideShape settledShape(std::uint32_t point);
+    void      take(std::uint32_t point, const WideShape& wide);
 
     SurfaceSurvey&              survey_;
     std::span<const glm::dvec3> positions_; ///< [m]
-    const NeighbourIndex&       index_;
-    Neighbourhoods              neighbourhoods_;
-    ShapeFitter                 fitter_;
-    std::vector<glm::dvec3>     away_;
-    std::vector<std::uint32_t>  found_;
-    std::vector<float>          values_;
+
+    std::span<const std::uint32_t> points_; ///< by rank
+    std::span<const glm::vec3>     given_;  ///< [1] of any length, by point; empty: none
+    std::span<glm::vec3>           faces_;  ///< [1] by rank
+
+    const NeighbourIndex&      index_;
+    Neighbourhoods             neighbourhoods_;
+    ShapeFitter                fitter_;
+    std::vector<glm::dvec3>    away_;
+    std::vector<std::uint32_t> found_;
+    std::vector<float>         values_;
 };
 
 LocalShape SurfaceSurvey::Measuring::shapeWithin(std::uint32_t point, double radius)
 {
     index_.gatherRanks(positions_[point], radius, found_);
+    takeAway(point);
+    return fitter_.fit(away_, radius, survey_.spacings_[point]);
+}
+
+/// Does the same for the face of a thin body on which the point lies: without the points whose given normals are
+/// opposite, or by the heights of the points.
+LocalShape SurfaceSurvey::Measuring::faceWithin(std::uint32_t point, double radius)
+{
+    index_.gatherRanks(positions_[point], radius, found_);
+    if (!given_.empty()) {
+        const glm::vec3 side = given_[points_[point]];
+        std::erase_if(found_, [&](std::uint32_t other) { return glm::dot(given_[points_[other]], side) < 0; });
+    }
+    takeAway(point);
+    return fitter_.fitFace(away_, radius, survey_.spacings_[point]);
+}
+
+/// Sets away_ from the points found, of very many evenly spread ones.
+void SurfaceSurvey::Measuring::takeAway(std::uint32_t point)
+{
     const std::size_t step = (found_.size() + kMostOfBall - 1) / kMostOfBall;
     away_.clear();
     for (std::size_t k = 0; k < found_.size(); k += step) away_.push_back(positions_[found_[k]] - positions_[point]);
-    return fitter_.fit(away_, radius, survey_.spacings_[point]);
 }
 
 /// Widens the ball of a point on a line until its points span a plane, and takes the spacing of the lines.
@@ -142,7 +185,8 @@ void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const st
     const auto radius = [&](std::uint32_t point) { return kReach * survey_.spacings_[point]; };
     neighbourhoods_.each(run, radius, [&](std::uint32_t point, std::span<const NearCandidate> near) {
         if (sided[point]) return;
-        double     height[2] = {}, weight[2] = {}; // [m] of the point over the layers along its normal and against it
+        // Of the layers along the point's normal and against it: its height over them [m], their noise [m].
+        double     height[2] = {}, noise[2] = {}, weight[2] = {};
         glm::dvec3 normal[2] = {};
         for (const NearCandidate& candidate : near) {
             const double share = 1 - candidate.distance2 / (radius(point) * radius(point));
@@ -150,6 +194,7 @@ void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const st
             const glm::dvec3 n     = survey_.normals_[candidate.rank];
             const int        layer = glm::dot(n, glm::dvec3(survey_.normals_[point])) < 0;
             height[layer] += share * std::abs(glm::dot(n, candidate.away));
+            noise[layer] += share * survey_.noises_[candidate.rank];
             weight[layer] += share;
             normal[layer] += share * n;
         }
@@ -159,41 +204,54 @@ void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const st
         if (!(weight[own] > 1) || height[own] > kOwnLayer * height[1 - own]) return;
         survey_.normals_[point] = glm::normalize(normal[own]);
         survey_.sided_[point]   = 1;
-        survey_.noises_[point]  = 0; // what it deviated by was the other layer
+        survey_.noises_[point]  = float(noise[own] / weight[own]); // what it deviated by was the other layer
     });
 }
 
-/// Returns the noise about a point whose neighbours scatter: the deviation that a wider ball does not enlarge; 0 if the
-/// deviation grows with every ball, as that of an edge does.
-float SurfaceSurvey::Measuring::noiseAbout(std::uint32_t point)
+/// Returns the shape about a point whose neighbours scatter, in the ball where a wider one no longer enlarges the
+/// deviation, which is then noise; a deviation of 0 if it grows with every ball, as that of an edge does.
+SurfaceSurvey::Measuring::WideShape SurfaceSurvey::Measuring::settledShape(std::uint32_t point)
 {
     const double spacing = survey_.spacings_[point];
-    LocalShape   narrow  = shapeWithin(point, kReach * spacing);
+    LocalShape   narrow  = faceWithin(point, kReach * spacing);
     int          settled = 0;
     for (double radius = 2 * kReach * spacing; radius <= kWidest * spacing; radius *= 2) {
-        const LocalShape wide = shapeWithin(point, radius);
-        settled               = wide.residual < kSettled * narrow.residual ? settled + 1 : 0;
-        if (settled > 0 && wide.tails < kTwoFaces) return 0;
-        if (settled == 2 || (settled == 1 && 2 * radius > kWidest * spacing)) {
-            survey_.normals_[point] = wide.normal;
-            return float(wide.residual);
-        }
+        const LocalShape wide = faceWithin(point, radius);
+        const double     most = wide.apart > 0 ? kSettledOnFace : kSettled;
+        settled               = wide.residual < most * narrow.residual ? settled + 1 : 0;
+        if (settled > 0 && wide.tails < kTwoFaces) return {};
+        if (settled == 2 || (settled == 1 && 2 * radius > kWidest * spacing)) return {wide, point, radius};
         narrow = wide;
     }
-    return 0;
+    return {};
+}
+
+/// Gives a point the noise of a wide shape that was fitted about a point close to it, and notes its normal if that is a
+/// face of a thin body; the point may lie on the other one.
+void SurfaceSurvey::Measuring::take(std::uint32_t point, const WideShape& wide)
+{
+    survey_.noises_[point] = float(wide.shape.residual);
+    if (point == wide.middle) survey_.normals_[point] = wide.shape.normal;
+    if (!(wide.shape.apart > 0)) return;
+    const glm::dvec3 away  = positions_[point] - positions_[wide.middle];
+    const bool       other = wide.shape.heightOf(away, wide.radius) < -wide.shape.apart / 2;
+    faces_[point]          = (other ? -1.0 : 1.0) * wide.shape.normalAt(away, wide.radius);
 }
 
 void SurfaceSurvey::Measuring::measureNoise(const RankRun& run)
 {
     std::size_t since = kTogether;
-    float       last  = 0;
+    WideShape   last;
     for (std::uint32_t point = run.begin; point < run.end; ++point) {
         if (survey_.sided_[point] || !(survey_.noises_[point] > kClean * survey_.spacings_[point])) continue;
         if (++since > kTogether) {
-            last  = noiseAbout(point);
+            last  = settledShape(point);
             since = 1;
         }
-        survey_.noises_[point] = last;
+        if (last.shape.residual > 0)
+            take(point, last);
+        else
+            survey_.noises_[point] = 0;
     }
 }
 
@@ -217,10 +275,13 @@ SurfaceSurvey::SurfaceSurvey(const NeighbourIndex& index, std::span<const glm::v
     const std::vector<std::uint32_t> points = index.pointsByRank();
     for (std::size_t rank = 0; rank < points.size(); ++rank) ranks_[points[rank]] = std::uint32_t(rank);
     if (!(index.spacing() > 0)) return;
-    spacings_          = localSpacingsByRank(index);
-    const auto eachRun = [&](auto&& measure) {
-        inCurveRuns(index.size(),
-                    [&] { return [&, m = Measuring(*this, index)](const RankRun& run) mutable { measure(m, run); }; });
+    spacings_ = localSpacingsByRank(index);
+    std::vector<glm::vec3> faces(points.size()); // [1] 0: none found
+    const auto             eachRun = [&](auto&& measure) {
+        inCurveRuns(index.size(), [&] {
+            return
+                [&, m = Measuring(*this, index, points, given, faces)](const RankRun& run) mutable { measure(m, run); };
+        });
     };
     // Most runs have nothing to do in all but the first of these, and say so quickly.
     eachRun([](Measuring& m, const RankRun& run) { m.measureShapes(run); });
@@ -230,6 +291,12 @@ SurfaceSurvey::SurfaceSurvey(const NeighbourIndex& index, std::span<const glm::v
     for (int round = 0; round < kMedians; ++round) {
         const std::vector<float> raw = noises_;
         eachRun([&](Measuring& m, const RankRun& run) { m.settleNoise(run, raw); });
+    }
+    // Faces count where there is noise: a ball about the rim of a clean body has two as well.
+    for (std::size_t rank = 0; rank < points.size(); ++rank) {
+        if (faces[rank] == glm::vec3(0) || !(noises_[rank] > kNoisySpacings * spacings_[rank])) continue;
+        normals_[rank] = faces[rank];
+        sided_[rank]   = 1;
     }
     byPoint_.resize(points.size());
     for (std::size_t rank = 0; rank < points.size(); ++rank) byPoint_[points[rank]] = spacings_[rank];

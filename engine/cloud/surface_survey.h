@@ -19,7 +19,9 @@ namespace palp {
 /// spacings. Elsewhere whoever needs the sign carries it along the surface, as SurfaceFlood does.
 /// Noise: the standard deviation of the points about a local quadric. Where it exceeds a tenth of a spacing the ball
 /// grows until the deviation grows no more: noise has one size, shape grows with the ball. What grows for ever is shape,
-/// and counts as clean. The median over the neighbours settles it.
+/// and counts as clean. The median over the neighbours settles it. Of a thin body it is that of one face: points of
+/// opposite given normals do not count, and where the deviations in a ball fall into two heaps, the point's own heap
+/// does; noisy faces then have a side as well.
 /// \thread immutable, so free to share
 class SurfaceSurvey {
 public:

@@ -135,6 +135,7 @@ TEST(ProxySheets, AHoleIsBridged)
 // Where the paper's form fails, or the cases above would be too easy.
 TEST(ProxySheets, ThePapersFormLosesTheSurface)
 {
+    // Not among them: noise of 0.2 and more on either sheet, which is averaged before any form sees the points.
     const struct {
         const char* name;
         SheetCase   scene;
@@ -145,7 +146,6 @@ TEST(ProxySheets, ThePapersFormLosesTheSurface)
         {"two sheets 2 apart, 20 beyond", {Layout::random, 0, 2, 0, 22}, 1},
         {"two sheets 3 apart, 20 beyond", {Layout::random, 0, 3, 0, 23}, 2},
         {"two noisy sheets 2 apart, 20 beyond", {Layout::random, 0.1, 2, 0, 22}, 1},
-        {"two noisy sheets 3 apart, 20 beyond", {Layout::random, 0.2, 3, 0, 23}, 1},
         {"hole of 3, depth 20", {Layout::random, 0, 0, 3, 20}, 7},
         {"hole of 6", {Layout::random, 0, 0, 6, 5}, 8},
     };

@@ -15,6 +15,7 @@ struct LocalShape {
     double     residual = 0;     ///< [m] standard deviation of the points about the fitted quadric
     double     tails    = 3;     ///< [1] kurtosis of the deviations, of more than 40 points: two layers have 1
     bool       sided    = false; ///< the points form two layers, and the normal points away from the other one
+    double     apart    = 0;     ///< [m] mean distance of the two faces that fitFace() told apart; 0: it did not
 
     // The quadric h = q0 + q1 a + q2 b + q3 a^2 + q4 a b + q5 b^2 [m] over a, b [radii], of points that lie nearly in a
     // plane and determine it well; then it holds for the points close to the middle one too.
@@ -24,6 +25,9 @@ struct LocalShape {
 
     /// Returns the quadric's normal [1] at a place close to the middle point, unit. Requires `smooth`.
     [[nodiscard]] glm::dvec3 normalAt(const glm::dvec3& away, double radius) const noexcept;
+
+    /// Returns how far a place lies above the quadric, along the normal [m].
+    [[nodiscard]] double heightOf(const glm::dvec3& away, double radius) const noexcept;
 };
 
 /// Fits planes and quadrics to the points about a point.
@@ -39,6 +43,10 @@ public:
     /// \param spacing  [m] around here
     [[nodiscard]] LocalShape fit(std::span<const glm::dvec3> away, double radius, double spacing);
 
+    /// Does the same for a wide ball about a noisy thin body: where the deviations from the quadric fall into two heaps
+    /// with hardly a point between them, which are its two faces, the quadric is that of the middle point's face alone.
+    [[nodiscard]] LocalShape fitFace(std::span<const glm::dvec3> away, double radius, double spacing);
+
 private:
     struct Height {
         double      height = 0; ///< [m]
@@ -52,6 +60,8 @@ private:
     };
 
     Cut                cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal);
+    Cut                bestCut();
+    [[nodiscard]] bool valleyAt(std::size_t cut) const;
     [[nodiscard]] bool areLayers(std::span<const glm::dvec3> away, const glm::dvec3& normal, double spacing,
                                  std::size_t cut) const;
     bool               keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double variance, double radius,
