@@ -23,7 +23,7 @@ struct PlateLevel {
     int   cellsX;
     int   cellsZ;
     uint  hinged; // sides without bending moment: supported and free
-    uint  free;   // sides whose nodes move
+    uint  free;   // sides whose nodes move: free and guided
     float kxx;    // hz^2/hx^2 / a          of the moment along x per second difference along x [1]
     float kzz;    // hx^2/hz^2 / a
     float kxz;    // nu / a

@@ -7,7 +7,8 @@
 //
 // Sides: a clamped one mirrors w (zero slope), p = 2 w1 there. A hinged one carries no moment across it; on its nodes
 // the curvature across is condensed out, which leaves (1 - nu^2)/2 D of the curvature along it, half because a side's
-// node stands for half a cell.
+// node stands for half a cell. A guided one mirrors w and its nodes move: half the moment along it counts, and beyond
+// it the moment across is that on it, which leaves half the force of a plate that goes on in its mirror image.
 //
 // A second difference is written as a change of changes: changes between neighbours of a smooth field are exact in
 // floating point, so that the rounding of a curvature is relative to the slope and not to the deflection. Code that
@@ -35,6 +36,18 @@ bool isHingedZ(PlateLevel g, int j)
     return (j == 0 && (g.hinged & kSideZ0) != 0u) || (j == g.cellsZ && (g.hinged & kSideZ1) != 0u);
 }
 
+bool isGuidedX(PlateLevel g, int i)
+{
+    uint sides = g.free & ~g.hinged;
+    return (i == 0 && (sides & kSideX0) != 0u) || (i == g.cellsX && (sides & kSideX1) != 0u);
+}
+
+bool isGuidedZ(PlateLevel g, int j)
+{
+    uint sides = g.free & ~g.hinged;
+    return (j == 0 && (sides & kSideZ0) != 0u) || (j == g.cellsZ && (sides & kSideZ1) != 0u);
+}
+
 real change(real from, real to)
 {
     return to - from;
@@ -60,12 +73,14 @@ real bendingZ(PlateLevel g, bool onHinge, real p, real q)
 real momentX(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
     real m = nodeRigidity * bendingX(g, isHingedZ(g, j), p, q);
+    if (isGuidedZ(g, j)) m = real(0.5f) * m;
     return i < 0 || i > g.cellsX || isHingedX(g, i) ? real(0) : m;
 }
 
 real momentZ(PlateLevel g, int i, int j, real nodeRigidity, real p, real q)
 {
     real m = nodeRigidity * bendingZ(g, isHingedX(g, i), p, q);
+    if (isGuidedX(g, i)) m = real(0.5f) * m;
     return j < 0 || j > g.cellsZ || isHingedZ(g, j) ? real(0) : m;
 }
 
@@ -126,6 +141,15 @@ real operatorAt(PlateLevel g, int i, int j)
     real ms = momentZ(g, i, j - 1, Ds, secondDifference(sw, s1, se), secondDifference(s2, s1, c));
     real mz = momentZ(g, i, j, Dc, p, q);
     real mn = momentZ(g, i, j + 1, Dn, secondDifference(nw, n1, ne), secondDifference(c, n1, n2));
+
+    if (isGuidedX(g, i)) {
+        mw = i == 0 ? mx : mw;
+        me = i == g.cellsX ? mx : me;
+    }
+    if (isGuidedZ(g, j)) {
+        ms = j == 0 ? mz : ms;
+        mn = j == g.cellsZ ? mz : mn;
+    }
 
     real tsw = twistingMoment(g, i - 1, j - 1, (Dsw + Ds) + (Dw + Dc), change(sw, s1), change(w1, c));
     real tse = twistingMoment(g, i, j - 1, (Ds + Dse) + (Dc + De), change(s1, se), change(c, e1));

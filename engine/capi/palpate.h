@@ -280,7 +280,8 @@ PALPATE_API int palpate_run(const palpate_object* object, const double* times, c
 typedef enum palpate_edge {
     PALPATE_CLAMPED   = 0, /**< neither moves nor turns */
     PALPATE_SUPPORTED = 1, /**< does not move, turns freely */
-    PALPATE_FREE      = 2  /**< not held */
+    PALPATE_FREE      = 2, /**< not held */
+    PALPATE_GUIDED    = 3  /**< moves, does not turn: where a symmetric plate was cut */
 } palpate_edge;
 
 /** A Kirchhoff plate of varying flexural rigidity on a foundation, (cells_x + 1) x (cells_z + 1) nodes, x first. */

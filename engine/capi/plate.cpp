@@ -18,8 +18,10 @@ Edge edgeOf(int edge)
         return Edge::supported;
     case PALPATE_FREE:
         return Edge::free;
+    case PALPATE_GUIDED:
+        return Edge::guided;
     default:
-        throw Error("edges: expected PALPATE_CLAMPED, PALPATE_SUPPORTED or PALPATE_FREE, found " +
+        throw Error("edges: expected PALPATE_CLAMPED, PALPATE_SUPPORTED, PALPATE_FREE or PALPATE_GUIDED, found " +
                     std::to_string(edge));
     }
 }

@@ -50,13 +50,16 @@ std::optional<std::string> whyRigidityIsBad(const PlateGrid& grid, const NodeFie
                     index / rigidity.nodesZ(), ", ", index % rigidity.nodesZ(), "]");
 }
 
-/// Returns whether the sides stop the rigid motions a + b x + c z: one clamped side stops all three, a supported side
-/// all but the turn about itself.
+/// Returns whether the sides stop the rigid motions a + b x + c z. A side across x that holds its nodes stops a + b x0
+/// and c, one that holds its slope stops b.
 bool isHeldBySides(const Plate& plate)
 {
-    const std::array sides = {plate.edges.x0, plate.edges.x1, plate.edges.z0, plate.edges.z1};
-    return std::ranges::count_if(sides, holdsNodes) >= 2 ||
-           std::ranges::any_of(sides, [](Edge edge) { return holdsNodes(edge) && holdsSlope(edge); });
+    const auto [x0, x1, z0, z1] = plate.edges;
+    const bool b =
+        holdsSlope(x0) || holdsSlope(x1) || holdsNodes(z0) || holdsNodes(z1) || (holdsNodes(x0) && holdsNodes(x1));
+    const bool c =
+        holdsSlope(z0) || holdsSlope(z1) || holdsNodes(x0) || holdsNodes(x1) || (holdsNodes(z0) && holdsNodes(z1));
+    return b && c && (holdsNodes(x0) || holdsNodes(x1) || holdsNodes(z0) || holdsNodes(z1));
 }
 
 std::optional<std::string> whyShapeIsBad(const PlateGrid& grid, const NodeField& shape)

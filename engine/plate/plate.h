@@ -12,22 +12,23 @@ namespace palp {
 enum class Edge {
     clamped,   ///< no deflection, no slope (the paper's only edge)
     supported, ///< no deflection, free to turn
-    free       ///< nothing holds it
+    free,      ///< nothing holds it
+    guided     ///< no slope, free to move: the line along which a symmetric plate was cut
 };
 constexpr auto namesOf(Edge)
 {
     using enum Edge;
-    return std::to_array<NamedValue<Edge>>({{clamped, "clamped"}, {supported, "supported"}, {free, "free"}});
+    return std::to_array<NamedValue<Edge>>({{clamped, "clamped"}, {supported, "supported"}, {free, "free"}, {guided, "guided"}});
 }
 /// Returns whether the nodes of such a side stay where they are.
 [[nodiscard]] constexpr bool holdsNodes(Edge edge) noexcept
 {
-    return edge != Edge::free;
+    return edge == Edge::clamped || edge == Edge::supported;
 }
 /// Returns whether such a side keeps the plate from turning about it; one that does not has no bending moment.
 [[nodiscard]] constexpr bool holdsSlope(Edge edge) noexcept
 {
-    return edge == Edge::clamped;
+    return edge == Edge::clamped || edge == Edge::guided;
 }
 
 struct PlateEdges {

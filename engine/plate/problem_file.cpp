@@ -53,7 +53,7 @@ Edge readEdge(const JsonObject& edges, std::string_view side)
 {
     if (!edges.has(side)) return Edge::clamped;
     if (const auto edge = valueNamed<Edge>(edges.text(side))) return *edge;
-    edges.refuse(side, "\"clamped\", \"supported\" or \"free\"");
+    edges.refuse(side, wordsOf<Edge>());
 }
 
 PlateEdges readEdges(const JsonObject& problem)

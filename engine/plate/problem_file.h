@@ -27,7 +27,7 @@ struct PlateProblem {
 ///     {"size": [1, 1.5],                          // [m] along x and z
 ///      "cells": [128, 192],                       // 4 to 4096 per side
 ///      "poisson": 0.3,
-///      "edges": {"x0": "clamped", "x1": "free", "z0": "supported", "z1": "clamped"},   // absent: clamped
+///      "edges": {"x0": "clamped", "x1": "free", "z0": "supported", "z1": "guided"},    // absent: clamped
 ///      "foundation": 0,                           // [Pa/m], or a law as of "rigidity"; absent: 0
 ///      "rigidity": {"law": "linear", "from": 1, "to": 10, "axis": "z"},                // [N m]
 ///      "load": {"law": "point", "force": 1, "at": [0.5, 0.75]},                        // [N], [m]

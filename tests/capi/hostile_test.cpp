@@ -228,7 +228,7 @@ TEST(Hostile, PlatesAreSolvedOrRefused)
         plate.size_z     = h.oneIn(20) ? h.wild() : 1;
         plate.poisson    = h.oneIn(20) ? h.wild() : 0.3;
         plate.foundation = h.oneIn(3) ? h.wild() : 0;
-        for (int& edge : plate.edges) edge = h.oneIn(30) ? -1 : int(h.below(3));
+        for (int& edge : plate.edges) edge = h.oneIn(30) ? -1 : int(h.below(4));
         plate.rigidity = D.data();
         if (h.oneIn(30)) plate.cells_x = h.oneIn(2) ? -5 : 3; // fewer than the arrays have
         double    error = 0;

@@ -255,6 +255,7 @@ TEST(ShellPatch, EverySideOfTheMembraneIsHeldAsItsOwnSideOfTheWindow)
     EXPECT_EQ(stressEdgesFor({clamped, supported, free, supported}), (PlateEdges{free, supported, clamped, supported}));
     EXPECT_EQ(stressEdgesFor({supported, free, clamped, free}), (PlateEdges{supported, clamped, free, clamped}));
     EXPECT_EQ(stressEdgesFor({free, clamped, supported, clamped}), (PlateEdges{clamped, free, supported, free}));
+    EXPECT_EQ(stressEdgesFor({guided, clamped, supported, guided}), (PlateEdges{guided, free, supported, guided}));
 }
 
 TEST(ShellPatch, EdgesOfTheMembraneGoWithThoseOfTheWindow)

@@ -248,6 +248,20 @@ TEST(MultigridShellSolver, NeverFailsOnRandomMapsAndCurvatures)
     }
 }
 
+TEST(MultigridShellSolver, SolvesHalvesOfSymmetricShells)
+{
+    Shell shell            = shellOf(square(64), wart(10), constant(1, 0.3, 0), 10);
+    shell.bending.edges.x1 = shell.stressEdges.x1 = Edge::guided;
+    shell.bending.edges.z0 = shell.stressEdges.z0 = Edge::guided;
+    for (const double x : {0.0, 15e-3}) {
+        const NodeField   load = fingertip(square(64), x, -x);
+        const ShellAnswer one  = solved(shell, load, 1e-4);
+        EXPECT_TRUE(one.report.converged);
+        EXPECT_LE(*one.report.iterations, 8) << "as with other sides";
+        EXPECT_NEAR(one.work / dot(load, ReferenceShellSolver(shell).solve(load).deflection), 1, 1e-6);
+    }
+}
+
 TEST(MultigridShellSolver, GivesEachOfSeveralLoadsTheAnswerThatItHasAlone)
 {
     const Shell            shell = shellOf(square(32), wart(10), constant(1, 0.3, 0), 8);

@@ -183,11 +183,13 @@ TEST(CellsThatAreNotSquare, GiveTheAnswerOfSquareOnes)
         }
 }
 
-constexpr Edge kEdges[] = {clamped, supported, free};
+constexpr Edge kEdges[] = {clamped, supported, free, guided};
 
 std::string text(const PlateEdges& e)
 {
-    const auto letter = [](Edge edge) { return edge == clamped ? "C" : edge == supported ? "S" : "F"; };
+    const auto letter = [](Edge edge) {
+        return edge == clamped ? "C" : edge == supported ? "S" : edge == free ? "F" : "G";
+    };
     return std::string(letter(e.x0)) + letter(e.x1) + letter(e.z0) + letter(e.z1);
 }
 
@@ -223,18 +225,23 @@ void forEverySolvableCombination(const Act& act)
         SCOPED_TRACE(text(edges));
         act(edges);
     });
-    EXPECT_EQ(solvable, 76) << "81 less FFFF and the four with one supported side among free ones";
+    EXPECT_EQ(solvable, 256 - 16 - 16) << "all less those of free and guided sides alone, and those with one supported "
+                                          "side opposite to a free one, free and guided ones beside it";
 }
 
 TEST(Edges, OnlyPlatesThatAreFreeToMoveCannotBeSolved)
 {
     forEveryCombination([](const PlateEdges& edges) {
-        int clampedSides = 0, supportedSides = 0;
-        for (const Edge edge : {edges.x0, edges.x1, edges.z0, edges.z1}) {
+        // A supported side leaves the turn about itself, which a guided side opposite stops, but not one beside it.
+        int  clampedSides = 0, supportedSides = 0;
+        bool opposite = false;
+        for (const auto& [edge, other] : {std::pair(edges.x0, edges.x1), std::pair(edges.x1, edges.x0),
+                                          std::pair(edges.z0, edges.z1), std::pair(edges.z1, edges.z0)}) {
             clampedSides += edge == clamped;
             supportedSides += edge == supported;
+            opposite = opposite || (edge == supported && other == guided);
         }
-        const bool held = clampedSides >= 1 || supportedSides >= 2;
+        const bool held = clampedSides >= 1 || supportedSides >= 2 || opposite;
         EXPECT_EQ(!whyUnsolvable(roughPlate(edges)), held) << text(edges);
         EXPECT_FALSE(whyUnsolvable(roughPlate(edges, 10))) << text(edges) << " on a foundation";
         if (!held) {
@@ -267,11 +274,43 @@ TEST(Edges, HeldNodesStayWhereTheyAre)
 
         for (int i = 0; i <= 9; ++i)
             for (int j = 0; j <= 7; ++j) {
-                const bool held = (i == 0 && edges.x0 != free) || (i == 9 && edges.x1 != free) ||
-                                  (j == 0 && edges.z0 != free) || (j == 7 && edges.z1 != free);
+                const auto holds = [](Edge edge) { return edge == clamped || edge == supported; };
+                const bool held  = (i == 0 && holds(edges.x0)) || (i == 9 && holds(edges.x1)) ||
+                                  (j == 0 && holds(edges.z0)) || (j == 7 && holds(edges.z1));
                 EXPECT_EQ(w(i, j) == 0, held) << i << ", " << j;
             }
     });
+}
+
+TEST(Edges, AGuidedSideIsTheMiddleOfASymmetricPlate)
+{
+    // A quarter of a plate, and the whole of it under four such loads.
+    Plate quarter       = roughPlate({supported, guided, clamped, guided}, 3);
+    Plate whole         = quarter;
+    whole.grid.cellsX   = 2 * quarter.grid.cellsX;
+    whole.grid.cellsZ   = 2 * quarter.grid.cellsZ;
+    whole.edges         = {supported, supported, clamped, clamped};
+    const auto unfolded = [&](const NodeField& part) {
+        NodeField all(whole.grid);
+        for (int i = 0; i < all.nodesX(); ++i)
+            for (int j = 0; j < all.nodesZ(); ++j)
+                all(i, j) = part(std::min(i, all.nodesX() - 1 - i), std::min(j, all.nodesZ() - 1 - j));
+        return all;
+    };
+    whole.rigidity    = unfolded(quarter.rigidity);
+    NodeField force   = noise(quarter.grid, 3, 0, 1); // of a node on a guided side: its half of the whole plate's
+    NodeField forces  = unfolded(force);
+    const int middleX = quarter.grid.cellsX, middleZ = quarter.grid.cellsZ;
+    for (int j = 0; j < forces.nodesZ(); ++j) forces(middleX, j) *= 2;
+    for (int i = 0; i < forces.nodesX(); ++i) forces(i, middleZ) *= 2;
+
+    const NodeField part = deflection(quarter, force), all = deflection(whole, forces);
+
+    const NodeField expected = unfolded(part);
+    double          most     = 0;
+    for (const double w : all.values()) most = std::max(most, std::abs(w));
+    for (std::size_t n = 0; n < all.values().size(); ++n)
+        EXPECT_NEAR(expected.values()[n], all.values()[n], 1e-9 * most) << "up to rounding";
 }
 
 TEST(Edges, MirroredAndTransposedPlatesGiveMirroredAndTransposedAnswers)

@@ -149,6 +149,22 @@ TEST(ReferenceShellSolver, IsOfSecondOrderWithTwistVaryingStiffnessAndOtherEdges
     }
 }
 
+TEST(ReferenceShellSolver, AGuidedSideIsTheMiddleOfASymmetricShell)
+{
+    const double k           = 1 / kRadius;
+    const Shell  whole       = homogeneous(32, kSize, {k, 0.4 * k, 0});
+    Shell        half        = whole;
+    half.bending.grid.cellsX = 16;
+    for (NodeField* field :
+         {&half.bending.rigidity, &half.membraneCompliance, &half.curvatureX, &half.curvatureZ, &half.curvatureXZ})
+        *field = NodeField(half.bending.grid, field->values()[0]);
+    half.bending.edges.x1 = half.stressEdges.x1 = Edge::guided;
+    NodeField force(whole.bending.grid), share(half.bending.grid);
+    force(16, 14) = 1;
+    share(16, 14) = 0.5; // the other half carries as much
+    EXPECT_NEAR(2 * compliance(half, share) / compliance(whole, force), 1, 1e-9) << "up to rounding";
+}
+
 TEST(ReferenceShellSolver, IsThePlateWithoutCurvature)
 {
     const Shell     shell = homogeneous(32, kSize, {0, 0, 0});

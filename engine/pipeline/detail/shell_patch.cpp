@@ -76,6 +76,7 @@ bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field)
 PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
 {
     const auto of = [](Edge edge) {
+        if (edge == Edge::guided) return Edge::guided; // the stresses are symmetric too
         return edge == Edge::free ? Edge::clamped : edge == Edge::clamped ? Edge::free : Edge::supported;
     };
     return {of(edges.x0), of(edges.x1), of(edges.z0), of(edges.z1)};

@@ -75,6 +75,8 @@ public:
         const Real *w = row(before), *outside = row(rules.mirrored(before - 1, g.cellsX));
         for (int n = 0; n < count_; ++n) slope_[(before + 1) & 1][n] = rules.change(outside[n], w[n]);
         moments<false>(before);
+        if (rules.isGuidedX(g, 0) && before == 0)
+            for (int n = 0; n < count_; ++n) bending_.change[n] = Real(0); // the moment beyond is that on the side
         if (firstRow > 0) moments<true>(firstRow);
     }
 
@@ -126,12 +128,16 @@ private:
     void moments(int i)
     {
         if (rules.isHingedX(g, i))
-            moments<kCells, true>(i);
+            moments<kCells, RowOf::hingedSide>(i);
+        else if (rules.isGuidedX(g, i))
+            moments<kCells, RowOf::guidedSide>(i);
         else
-            moments<kCells, false>(i);
+            moments<kCells, RowOf::others>(i);
     }
 
-    template <bool kCells, bool kHinged>
+    enum class RowOf { hingedSide, guidedSide, others };
+
+    template <bool kCells, RowOf kRow>
     void moments(int i)
     {
         const PlateLevel level = g; // a copy that no store can change
@@ -141,6 +147,8 @@ private:
         const float*     D     = D_ + std::ptrdiff_t(i) * nodes_;
         const Bending    x     = bending_;
         const Twisting   cells = twisting_;
+
+        constexpr bool kHinged = kRow == RowOf::hingedSide;
 
         const auto atSide = [&](int j) {
             const int n = j - first_, south = rules.mirrored(j - 1, level.cellsZ) - first_,
@@ -161,6 +169,7 @@ private:
             const Real q     = rules.secondDifference(w[n - 1], w[n], w[n + 1]);
             slope[n]         = along;
             mz[n]            = Real(D[n]) * rules.bendingZ(level, kHinged, p, q);
+            if (kRow == RowOf::guidedSide) mz[n] = Real(0.5F) * mz[n];
             x.goOn(n, kHinged ? Real(0) : Real(D[n]) * rules.bendingX(level, false, p, q));
             if (kCells) cells.goOn(n, twistOf(D, was, n));
         }
@@ -170,12 +179,15 @@ private:
             atSide(0);
         }
         if (atLast) atSide(level.cellsZ);
+        if (atFirst && rules.isGuidedZ(level, 0)) mz[-1] = mz[0];
+        if (atLast && rules.isGuidedZ(level, level.cellsZ)) mz[count_] = mz[count_ - 1];
     }
 
     void afterTheLast()
     {
+        const bool guided = rules.isGuidedX(g, g.cellsX);
         for (int n = 0; n < count_; ++n) {
-            bending_.goOn(n, Real(0));
+            bending_.goOn(n, guided ? bending_.moment[n] : Real(0));
             twisting_.goOn(n, Real(0));
         }
     }

@@ -28,23 +28,22 @@ Tone toneOf(Edge edge)
     return !holdsNodes(edge) ? Tone::second : holdsSlope(edge) ? Tone::plain : Tone::accent;
 }
 
-/// Draws clamped sides thick, supported ones thin and free ones dashed, distinct without their colours too.
+/// Draws clamped sides thick, supported ones thin, guided ones in thick dashes and free ones in thin ones, distinct
+/// without their colours too.
 void drawSide(const PanelDesk& desk, ImVec2 from, ImVec2 to, Edge edge)
 {
     ImDrawList* const   draw = ImGui::GetWindowDrawList();
     const std::uint32_t ink  = packed(colourOf(toneOf(edge), desk.dark()));
     const float         s    = desk.scale;
-    if (holdsNodes(edge)) {
-        draw->AddLine(from, to, ink, holdsSlope(edge) ? 4 * s : 1.5F * s);
-        return;
-    }
+    const float         wide = holdsSlope(edge) ? 4 * s : holdsNodes(edge) ? 1.5F * s : 2 * s;
+    if (holdsNodes(edge)) return draw->AddLine(from, to, ink, wide);
     const float dash = 6 * s, length = std::hypot(to.x - from.x, to.y - from.y);
     const int   dashes = std::max(2, int(length / dash));
     for (int n = 0; n < dashes; ++n) {
         const auto at = [&](float share) {
             return ImVec2(from.x + (to.x - from.x) * share, from.y + (to.y - from.y) * share);
         };
-        draw->AddLine(at(float(n) / float(dashes)), at((float(n) + 0.6F) / float(dashes)), ink, 2 * s);
+        draw->AddLine(at(float(n) / float(dashes)), at((float(n) + 0.6F) / float(dashes)), ink, wide);
     }
 }
 

@@ -460,12 +460,12 @@ TEST_F(MultigridPlate, EveryEdgeOnEveryGroundAgreesWithTheReferenceUnderEverySch
 {
     if (validation() == compute::Validation::gpuAssisted)
         GTEST_SKIP() << "the fused kernels take minutes to compile then";
-    constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free};
+    constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free, Edge::guided};
     for (const Schedule schedule : schedulesOf(context())) {
         const PlateKernels kernels(context(), schedule);
-        for (int code = 0; code < 81; code += validation() == compute::Validation::off ? 1 : 20)
+        for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 3 : 61)
             for (const double foundation : {0.0, 1e-2, 1e6}) {
-                const PlateEdges edges{kEdges[code % 3], kEdges[code / 3 % 3], kEdges[code / 9 % 3], kEdges[code / 27]};
+                const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4], kEdges[code / 64]};
                 Plate            plate = plateOf(26, 19, edges, kLaws[3]);
                 plate.foundation       = foundation;
                 if (whyUnsolvable(plate)) continue; // nothing holds it
@@ -503,12 +503,12 @@ TEST_F(MultigridPlate, AFoundationThatVariesAgreesWithTheReferenceUnderEverySche
 {
     if (validation() == compute::Validation::gpuAssisted)
         GTEST_SKIP() << "the fused kernels take minutes to compile then";
-    constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free};
+    constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free, Edge::guided};
     for (const Schedule schedule : schedulesOf(context())) {
         const PlateKernels kernels(context(), schedule);
-        for (int code = 0; code < 81; code += validation() == compute::Validation::off ? 4 : 20)
+        for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 11 : 61)
             for (const double stiffness : {0.1, 10.0}) {
-                const PlateEdges edges{kEdges[code % 3], kEdges[code / 3 % 3], kEdges[code / 9 % 3], kEdges[code / 27]};
+                const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4], kEdges[code / 64]};
                 const Plate      plate    = onBed(plateOf(40, 29, edges, kLaws[3]), stiffness);
                 const NodeField  load     = loadOn(plate.grid);
                 const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
@@ -553,9 +553,9 @@ TEST_F(MultigridPlate, AnotherFoundationIsAsIfTheSolverWereNew)
 
 TEST_F(MultigridPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)
 {
-    constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free};
-    for (int code = 0; code < 81; code += validation() == compute::Validation::off ? 1 : 20) {
-        const PlateEdges edges{kEdges[code % 3], kEdges[code / 3 % 3], kEdges[code / 9 % 3], kEdges[code / 27]};
+    constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free, Edge::guided};
+    for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 3 : 61) {
+        const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4], kEdges[code / 64]};
         Plate            plate    = plateOf(26, 19, edges, kLaws[3]); // an odd number of cells, two levels
         plate.foundation          = 40;                               // so that a plate free on all sides has an answer
         const NodeField     load  = loadOn(plate.grid);

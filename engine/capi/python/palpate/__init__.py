@@ -596,7 +596,7 @@ def plate(rigidity: ArrayLike, forces: ArrayLike, size: "tuple[float, float]" = 
           tolerance: float = 1e-4) -> "tuple[np.ndarray, float]":
     """Solves a Kirchhoff plate of varying rigidity: rigidity (m, n) [N m] and forces (m, n) [N] at its nodes.
 
-    size: (x, z) [m]. edges: "clamped", "supported" or "free", or four of them for x = 0, x = size, z = 0, z = size.
+    size: (x, z) [m]. edges: "clamped", "supported", "free" or "guided", or four of them for x = 0, x = size, z = 0, z = size.
     foundation: [Pa/m]. Returns the deflection (m, n) [m] and the estimate of its relative error in the energy norm.
 
     >>> D, f = np.ones((33, 33)), np.zeros((33, 33))
@@ -607,10 +607,10 @@ def plate(rigidity: ArrayLike, forces: ArrayLike, size: "tuple[float, float]" = 
     """
     D = _doubles(rigidity, "rigidity", None, None)
     f = _doubles(forces, "forces", *D.shape)
-    names = {"clamped": 0, "supported": 1, "free": 2}
+    names = {"clamped": 0, "supported": 1, "free": 2, "guided": 3}
     four = tuple(edges) if isinstance(edges, (tuple, list)) else (edges,) * 4
     if len(four) != 4 or any(not isinstance(edge, str) or edge not in names for edge in four):
-        raise Error(f"edges: expected clamped, supported or free, or four of them, found {edges!r}")
+        raise Error(f"edges: expected {', '.join(names)}, or four of them, found {edges!r}")
     if min(D.shape) < 2:
         raise Error(f"rigidity: expected at least 5 x 5 nodes, found {D.shape}")
     metres = _doubles(size, "size", 2)

@@ -45,6 +45,9 @@ void addGhost(Edge edge, double weight, double& onSide, double& next, double& fu
         onSide += 2 * weight;
         next -= weight;
         break;
+    case Edge::guided:
+        next += weight;
+        break;
     }
 }
 
