@@ -97,7 +97,7 @@ TEST(SurfaceSurvey, FindsTheNoiseOfTheFacesOfAThinBody)
             }
             EXPECT_NEAR(quantile(found, 0.5), 1, 0.06) << "as of one sheet; a cut between faces trims the heaps' tails";
             EXPECT_LT(double(wrong) / double(points.size()), 4 * body.noise < body.thickness ? 0.03 : 0.09)
-                << "at four times the noise 2.3 % lie on the other side of the middle, and 5 % see no valley";
+                << "at four times the noise 2.3 % lie on the other side of the middle, and 5 % are not told apart";
         }
 }
 

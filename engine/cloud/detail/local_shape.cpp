@@ -25,9 +25,9 @@ constexpr std::size_t kForSmooth   = 12;  // points: fewer determine no quadric 
 constexpr double      kEven        = 0.3; // [1] least ratio of their extents, squared, for that
 constexpr int         kForTails    = 40;  // points: fewer tell nothing about tails
 
-// Two faces have a valley between them: within so many standard deviations on either side of the middle lies at most such
-// a share of the points. Faces four times their noise apart have 0.07 there, evenly spread noise has 0.14, Gaussian 0.20.
-constexpr double kValleyHalf = 0.25, kValleyShare = 0.09;
+// Two faces are so many times as far apart as their points deviate [1]. Half of evenly spread noise is 3.5 times its own
+// deviation from the other half, half of Gaussian noise 2.7 times; faces four times their noise apart have 4.4.
+constexpr double kFacesApart = 3.8;
 
 /// The principal axes of some points.
 struct Axes {
@@ -271,21 +271,6 @@ bool ShapeFitter::keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 norm
     }
 }
 
-/// Returns whether hardly a height lies in the middle between the means of those below and above a cut.
-bool ShapeFitter::valleyAt(std::size_t cut) const
-{
-    double below = 0, above = 0, square = 0;
-    for (std::size_t k = 0; k < heights_.size(); ++k) {
-        (k < cut ? below : above) += heights_[k].height;
-        square += heights_[k].height * heights_[k].height;
-    }
-    const auto   count  = double(heights_.size());
-    const double middle = (below / double(cut) + above / (count - double(cut))) / 2;
-    const double half   = kValleyHalf * std::sqrt(square / count);
-    const auto   within = [&](const Height& h) { return std::abs(h.height - middle) < half; };
-    return double(std::ranges::count_if(heights_, within)) < kValleyShare * count;
-}
-
 LocalShape ShapeFitter::fitFace(std::span<const glm::dvec3> away, double radius, double spacing)
 {
     LocalShape both = fit(away, radius, spacing);
@@ -293,7 +278,6 @@ LocalShape ShapeFitter::fitFace(std::span<const glm::dvec3> away, double radius,
     heights_.clear();
     for (std::size_t i = 0; i < away.size(); ++i) heights_.push_back({both.heightOf(away[i], radius), i});
     const std::size_t cut = bestCut().at;
-    if (!valleyAt(cut)) return both;
 
     const bool above = both.heightOf({}, radius) > (heights_[cut - 1].height + heights_[cut].height) / 2;
     own_.clear();
@@ -307,7 +291,7 @@ LocalShape ShapeFitter::fitFace(std::span<const glm::dvec3> away, double radius,
     face.sided = true;
     for (std::size_t k = above ? 0 : cut; k < (above ? cut : heights_.size()); ++k)
         face.apart -= face.heightOf(away[heights_[k].point], radius) / double(heights_.size() - own_.size());
-    return face.apart > 3.5 * face.residual ? face : both;
+    return face.apart > kFacesApart * face.residual ? face : both;
 }
 
 LocalShape ShapeFitter::fit(std::span<const glm::dvec3> away, double radius, double spacing)

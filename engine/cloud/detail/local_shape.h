@@ -44,7 +44,7 @@ public:
     [[nodiscard]] LocalShape fit(std::span<const glm::dvec3> away, double radius, double spacing);
 
     /// Does the same for a wide ball about a noisy thin body: where the deviations from the quadric fall into two heaps
-    /// with hardly a point between them, which are its two faces, the quadric is that of the middle point's face alone.
+    /// far apart, which are its two faces, the quadric is that of the middle point's face alone.
     [[nodiscard]] LocalShape fitFace(std::span<const glm::dvec3> away, double radius, double spacing);
 
 private:
@@ -61,7 +61,6 @@ private:
 
     Cut                cutByHeight(std::span<const glm::dvec3> away, const glm::dvec3& normal);
     Cut                bestCut();
-    [[nodiscard]] bool valleyAt(std::size_t cut) const;
     [[nodiscard]] bool areLayers(std::span<const glm::dvec3> away, const glm::dvec3& normal, double spacing,
                                  std::size_t cut) const;
     bool               keepOwnLayer(std::span<const glm::dvec3> away, glm::dvec3 normal, double variance, double radius,
