@@ -5,6 +5,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "engine/contact/detail/contact_points.h"
+#include "tests/contact/proxy_scenes.h"
+
 namespace palp {
 namespace {
 
@@ -47,6 +50,28 @@ TEST(RestOn, IsTheNearestPlaceThatIsBehindNothing)
             if (planes[0].height(other) < 0 || planes[1].height(other) < 0 || planes[2].height(other) < 0) continue;
             EXPECT_GE(glm::length(other - hip), glm::length(rest.point - hip) - 1e-9);
         }
+    }
+}
+
+TEST(SurfaceTracker, DropsACeilingThatHasComeDownToTheFloor)
+{
+    using namespace proxytest;
+    Sheet  sheet(Layout::random, 3);
+    Points points = sheet.over(-20, 20, -20, 20);
+    for (glm::dvec3& p : points) p *= kSpacing;
+    const std::vector<double> stiffness(points.size(), 1e6);
+    const SoftObject          object(PointCloud(std::move(points), stiffness, StiffnessKind::modulus));
+    NearPoints                near{ContactPoints(object)};
+    SurfaceTracker            tracker(near);
+    for (const double height : {0.2, 8.0}) { // [spacings]
+        Surfaces surfaces;
+        surfaces.spacing   = kSpacing;
+        surfaces.planes[0] = plane({0, 0, 1}, {0, 0, 0});
+        surfaces.planes[1] = plane({0, 0, -1}, {0, 0, height * kSpacing});
+        surfaces.count     = 2;
+        tracker.refresh(surfaces, {0, 0, 0.1 * kSpacing});
+        EXPECT_EQ(surfaces.count, height < 1 ? 1 : 2) << height;
+        EXPECT_GT(surfaces.planes[0].normal.z, 0.99);
     }
 }
 

@@ -329,6 +329,20 @@ TEST(DenseCloud, KeepsItsEdges)
     EXPECT_TRUE(!edge.coarse || edge.coarse->side() < 0.5 * cell);
 }
 
+/// Noise that reaches from one cube into the next would make two surfaces of one.
+TEST(DenseCloud, KeepsItsPointsWhereTheyAreNoisy)
+{
+    const double cell = kTouch.window / kTouch.cells;
+    for (const double noise : {0.05, 0.15}) { // [cells]
+        std::mt19937_64            random(3);
+        std::normal_distribution<> normal(0, noise * cell);
+        Cloud                      cloud;
+        for (const glm::dvec3& p : sheet(90'000, 0, 6)) cloud.add({p + glm::dvec3(0, 0, normal(random))}, uniform);
+        const Patch patch = deform(cloud.object(), {{1e-3, 1e-3, 0}, {0, 0, 1}}, kTouch);
+        EXPECT_EQ(patch.coarse != nullptr, noise < 0.1) << noise;
+    }
+}
+
 /// A cloud that is far denser than the grid is touched by a point or so per cell, and all of it moves.
 TEST(DenseCloud, FeelsAsTheSparseOneAndMovesSmoothly)
 {
