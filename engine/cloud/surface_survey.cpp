@@ -204,7 +204,9 @@ void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const st
         if (!(weight[own] > 1) || height[own] > kOwnLayer * height[1 - own]) return;
         survey_.normals_[point] = glm::normalize(normal[own]);
         survey_.sided_[point]   = 1;
-        survey_.noises_[point]  = float(noise[own] / weight[own]); // what it deviated by was the other layer
+        // What it deviated by was the other layer; the own one's deviation is worth a search, or nothing.
+        const double scatter   = noise[own] / weight[own];
+        survey_.noises_[point] = scatter > kClean * survey_.spacings_[point] ? float(scatter) : 0;
     });
 }
 
@@ -231,8 +233,10 @@ SurfaceSurvey::Measuring::WideShape SurfaceSurvey::Measuring::settledShape(std::
 void SurfaceSurvey::Measuring::take(std::uint32_t point, const WideShape& wide)
 {
     survey_.noises_[point] = float(wide.shape.residual);
-    if (point == wide.middle) survey_.normals_[point] = wide.shape.normal;
-    if (!(wide.shape.apart > 0)) return;
+    if (!(wide.shape.apart > 0)) {
+        if (point == wide.middle && !survey_.sided_[point]) survey_.normals_[point] = wide.shape.normal;
+        return;
+    }
     const glm::dvec3 away  = positions_[point] - positions_[wide.middle];
     const bool       other = wide.shape.heightOf(away, wide.radius) < -wide.shape.apart / 2;
     faces_[point]          = (other ? -1.0 : 1.0) * wide.shape.normalAt(away, wide.radius);
@@ -243,7 +247,7 @@ void SurfaceSurvey::Measuring::measureNoise(const RankRun& run)
     std::size_t since = kTogether;
     WideShape   last;
     for (std::uint32_t point = run.begin; point < run.end; ++point) {
-        if (survey_.sided_[point] || !(survey_.noises_[point] > kClean * survey_.spacings_[point])) continue;
+        if (!(survey_.noises_[point] > kClean * survey_.spacings_[point])) continue;
         if (++since > kTogether) {
             last  = settledShape(point);
             since = 1;

@@ -364,8 +364,9 @@ double energy(const Plate& plate, const NodeField& w)
     for (int i = 0; i <= cellsX; ++i)
         for (int j = 0; j <= cellsZ; ++j) {
             const bool edgeX = i == 0 || i == cellsX, edgeZ = j == 0 || j == cellsZ;
-            const bool momentX = !edgeX || (i == 0 ? plate.edges.x0 : plate.edges.x1) == clamped;
-            const bool momentZ = !edgeZ || (j == 0 ? plate.edges.z0 : plate.edges.z1) == clamped;
+            const auto turns   = [](Edge edge) { return edge == supported || edge == free; };
+            const bool momentX = !edgeX || !turns(i == 0 ? plate.edges.x0 : plate.edges.x1);
+            const bool momentZ = !edgeZ || !turns(j == 0 ? plate.edges.z0 : plate.edges.z1);
             const int  left = i == 0 ? 1 : i - 1, right = i == cellsX ? cellsX - 1 : i + 1; // mirrored at edges
             const int  below = j == 0 ? 1 : j - 1, above = j == cellsZ ? cellsZ - 1 : j + 1;
             double     a = momentX ? (w(left, j) - 2 * w(i, j) + w(right, j)) / (hx * hx) : 0;

@@ -29,6 +29,10 @@ constexpr int         kForTails    = 40;  // points: fewer tell nothing about ta
 // deviation from the other half, half of Gaussian noise 2.7 times; faces four times their noise apart have 4.4.
 constexpr double kFacesApart = 3.8;
 
+// The depth of the other face scatters by so many times this one's deviation at most [1]: as much where they are parallel,
+// more where they meet at a rim.
+constexpr double kParallel = 1.5;
+
 // The kurtosis of two heaps of similar size is 1 to 1.8 [1]: what is above this needs no cut, which takes a third as long
 // as the fits. Gaussian noise has 3, give or take 0.2 in the wide balls.
 constexpr double kMayBeFaces = 2.4;
@@ -292,10 +296,18 @@ LocalShape ShapeFitter::fitFace(std::span<const glm::dvec3> away, double radius,
         face.normal = -face.normal;
         for (double& q : face.quadric) q = -q;
     }
+    double     mean = 0, square = 0; // [m] of the other face's depth below this one
+    const auto others = double(away.size() - own_.size());
+    for (std::size_t k = above ? 0 : cut; k < (above ? cut : heights_.size()); ++k) {
+        const double below = -face.heightOf(away[heights_[k].point], radius);
+        mean += below / others;
+        square += below * below / others;
+    }
+    const double spread = std::sqrt(std::max(0.0, square - mean * mean));
+    if (mean < kFacesApart * face.residual || spread > kParallel * face.residual) return both;
     face.sided = true;
-    for (std::size_t k = above ? 0 : cut; k < (above ? cut : heights_.size()); ++k)
-        face.apart -= face.heightOf(away[heights_[k].point], radius) / double(heights_.size() - own_.size());
-    return face.apart > kFacesApart * face.residual ? face : both;
+    face.apart = mean;
+    return face;
 }
 
 LocalShape ShapeFitter::fit(std::span<const glm::dvec3> away, double radius, double spacing)

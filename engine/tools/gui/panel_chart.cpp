@@ -151,12 +151,14 @@ void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<
     reading(desk, Half::right, "w", formatted("%.4f mm", 1e3 * desk.content.force * patch.response(i, j)));
 }
 
-/// Explains how each kind of side is drawn.
-void drawKeyOfSides(const PanelDesk& desk)
+/// Explains how each kind of side that the patch has is drawn.
+void drawKeyOfSides(const PanelDesk& desk, const PlateEdges& edges)
 {
     const float mark = 16 * desk.scale, gap = 4 * desk.scale;
+    bool        first = true;
     for (const auto& [edge, word] : namesOf(Edge{})) {
-        if (edge != Edge{}) ImGui::SameLine(0, 3 * gap);
+        if (edge != edges.x0 && edge != edges.x1 && edge != edges.z0 && edge != edges.z1) continue;
+        if (!std::exchange(first, false)) ImGui::SameLine(0, 3 * gap);
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float  y  = at.y + 0.55F * ImGui::GetFontSize();
         drawSide(desk, {at.x, y}, {at.x + mark, y}, edge);
@@ -199,7 +201,7 @@ void drawChartSection(PanelDesk& desk)
     auto           pointed = drawMap(desk, *patch, d, side);
     ImGui::SameLine(0, gap);
     if (const auto there = drawMap(desk, *patch, w, side)) pointed = there;
-    drawKeyOfSides(desk);
+    drawKeyOfSides(desk, patch->plate.edges);
     drawReadOut(desk, *patch, pointed);
 }
 
