@@ -9,7 +9,7 @@
 
 #include "engine/plate/load.h"
 #include "engine/plate/reference/reference_shell_solver.h"
-#include "engine/plate/stretch_energy.h"
+#include "engine/plate/shell_energy.h"
 #include "tests/plate/large_shells.h"
 
 namespace palp {

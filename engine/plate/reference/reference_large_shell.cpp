@@ -4,7 +4,7 @@
 
 #include "engine/core/quantity.h"
 #include "engine/plate/reference/detail/shell_unknowns.h"
-#include "engine/plate/stretch_energy.h"
+#include "engine/plate/shell_energy.h"
 
 namespace palp {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "engine/plate/reference/plate_energy.h"
+#include "engine/plate/shell_energy.h"
 
 namespace palp {
 namespace {
@@ -49,33 +49,19 @@ void addEnergy(ShellEntries& entries, const Plate& plate, const std::vector<int>
     });
 }
 
-/// Adds the second derivative of - int w (kx phi_zz + kz phi_xx - 2 kxz phi_xz), times `scale`.
+/// Adds the second derivative of the coupling by curvature, times `scale`.
 void addCoupling(ShellEntries& entries, const Shell& shell, const Plate& membrane, const std::vector<int>& ofW,
                  const std::vector<int>& ofPhi, double scale)
 {
-    const PlateGrid& g  = membrane.grid;
-    const double     hx = g.spacingX, hz = g.spacingZ;
-    const auto       couple = [&](int node, const Difference& d, double k) {
-        const int row = ofW[std::size_t(node)];
-        for (std::size_t m = 0; m < std::size_t(d.count); ++m) {
-            const int column = ofPhi[std::size_t(d.node[m])];
+    visitCouplingTerms(shell, membrane, [&](const CouplingTerm& term) {
+        const int row = ofW[std::size_t(term.node)];
+        for (std::size_t m = 0; m < std::size_t(term.force.count); ++m) {
+            const int column = ofPhi[std::size_t(term.force.node[m])];
             if (row == kHeldUnknown || column == kHeldUnknown) continue;
-            entries.emplace_back(row, column, scale * k * d.factor[m]);
-            entries.emplace_back(column, row, scale * k * d.factor[m]);
+            entries.emplace_back(row, column, scale * term.stiffness * term.force.factor[m]);
+            entries.emplace_back(column, row, scale * term.stiffness * term.force.factor[m]);
         }
-    };
-    const NodeField& kxz = shell.curvatureXZ;
-    for (int i = 0; i < g.nodesX(); ++i)
-        for (int j = 0; j < g.nodesZ(); ++j) {
-            const int        node = i * g.nodesZ() + j, beside = node + g.nodesZ();
-            const EnergyTerm bending = bendingTerm(membrane, i, j); // p: undivided phi_xx, q: phi_zz
-            couple(node, bending.p, -shell.curvatureZ(i, j) * nodeArea(g, i, j) / (hx * hx));
-            couple(node, bending.q, -shell.curvatureX(i, j) * nodeArea(g, i, j) / (hz * hz));
-            if (i == g.cellsX || j == g.cellsZ) continue;
-            const double     mean  = 0.25 * (kxz(i, j) + kxz(i + 1, j) + kxz(i, j + 1) + kxz(i + 1, j + 1));
-            const EnergyTerm twist = twistingTerm(membrane, i, j); // p: undivided phi_xz; the cell's area cancels
-            for (const int corner : {node, beside, node + 1, beside + 1}) couple(corner, twist.p, 2 * mean * 0.25);
-        }
+    });
 }
 
 } // namespace

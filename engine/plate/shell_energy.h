@@ -4,6 +4,11 @@
 
 namespace palp {
 
+// What couples the deflection of a shell with its membrane, as sums of small terms in undivided differences.
+//
+// Where the surface is curved: - int w (kx phi_zz + kz phi_xx - 2 kxz phi_xz) = sum of k w n(phi), see Shell; n is a second
+// difference at the node of w, or the twist of a cell at each of whose corners w is a quarter.
+//
 // What a sheet stores beyond the linear theory when it turns out of its surface as it bends,
 //
 //     T(w, phi) = 1/2 int N : (grad w, grad w)        N from phi as for Shell, tension positive
@@ -16,6 +21,34 @@ namespace palp {
 // Where an edge of the membrane leaves no second difference, n is empty. Together with the quadratic energies this is
 // the theory of Marguerre and von Karman, valid while slopes stay small, some two thicknesses deep.
 // \source  von Karman 1910; Marguerre 1938
+
+struct CouplingTerm {
+    int        node = 0;      ///< of w
+    Difference force;         ///< n
+    double     stiffness = 0; ///< k [1/m] of w [m] and phi [N m]
+};
+
+/// Calls visit(term) for every term of the coupling by curvature, always in the same order.
+/// \param membrane  of membraneOf(shell)
+template <class Visit>
+void visitCouplingTerms(const Shell& shell, const Plate& membrane, Visit&& visit)
+{
+    const PlateGrid& g  = membrane.grid;
+    const double     hx = g.spacingX, hz = g.spacingZ;
+    const NodeField& kxz = shell.curvatureXZ;
+    for (int i = 0; i < g.nodesX(); ++i)
+        for (int j = 0; j < g.nodesZ(); ++j) {
+            const int        node = i * g.nodesZ() + j, beside = node + g.nodesZ();
+            const EnergyTerm bending = bendingTerm(membrane, i, j); // p: undivided phi_xx, q: phi_zz
+            visit(CouplingTerm{node, bending.p, -shell.curvatureZ(i, j) * nodeArea(g, i, j) / (hx * hx)});
+            visit(CouplingTerm{node, bending.q, -shell.curvatureX(i, j) * nodeArea(g, i, j) / (hz * hz)});
+            if (i == g.cellsX || j == g.cellsZ) continue;
+            const double     mean  = 0.25 * (kxz(i, j) + kxz(i + 1, j) + kxz(i, j + 1) + kxz(i + 1, j + 1));
+            const Difference twist = twistingTerm(membrane, i, j).p; // undivided phi_xz; the cell's area cancels
+            for (const int corner : {node, beside, node + 1, beside + 1})
+                visit(CouplingTerm{corner, twist, 2 * mean * 0.25});
+        }
+}
 
 struct StretchTerm {
     Difference force;         ///< n
@@ -62,6 +95,12 @@ void visitStretchTerms(const Plate& membrane, Visit&& visit)
             visit(twist);
         }
 }
+
+/// Returns the forces B phi of membrane forces on a curved sheet [N]; the coupling is w . B phi.
+[[nodiscard]] NodeField couplingForces(const Shell& shell, const NodeField& phi);
+
+/// Returns the load B' w of a curved sheet's deflection on its membrane [m].
+[[nodiscard]] NodeField couplingLoad(const Shell& shell, const NodeField& w);
 
 /// Returns the forces S(phi) w by which membrane forces resist slopes [N]: T = w . S(phi) w / 2.
 [[nodiscard]] NodeField stretchForces(const Plate& membrane, const NodeField& phi, const NodeField& w);

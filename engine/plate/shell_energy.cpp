@@ -1,4 +1,4 @@
-#include "engine/plate/stretch_energy.h"
+#include "engine/plate/shell_energy.h"
 
 namespace palp {
 namespace {
@@ -9,6 +9,24 @@ void add(NodeField& to, const Difference& d, double factor)
 }
 
 } // namespace
+
+NodeField couplingForces(const Shell& shell, const NodeField& phi)
+{
+    NodeField forces(shell.bending.grid);
+    visitCouplingTerms(shell, membraneOf(shell), [&](const CouplingTerm& term) {
+        forces.values()[std::size_t(term.node)] += term.stiffness * valueOf(term.force, phi);
+    });
+    return forces;
+}
+
+NodeField couplingLoad(const Shell& shell, const NodeField& w)
+{
+    NodeField load(shell.bending.grid);
+    visitCouplingTerms(shell, membraneOf(shell), [&](const CouplingTerm& term) {
+        add(load, term.force, term.stiffness * w.values()[std::size_t(term.node)]);
+    });
+    return load;
+}
 
 NodeField stretchForces(const Plate& membrane, const NodeField& phi, const NodeField& w)
 {
