@@ -522,6 +522,25 @@ void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& 
         patch.stiffening = responseOf(Footprint(unitLoad(patch.plate.grid, settings)), patch.stiffeningAtNodes).work;
 }
 
+/// Of the solutions that a law of large deflections consists of [1]: its own model is right to a hundredth.
+constexpr double kShapesTolerance = 1e-3;
+
+/// Finds how the plate's force goes on where the dent is as deep as the sheet is thick, if the settings ask for it.
+void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+{
+    if (settings.large == Large::off) return;
+    constexpr double kTrusted = 2; // thicknesses, see LargeLaw [1]
+    const StageClock clock(patch.times.solve);
+    const Shell      shell = shellOf(patch);
+    if (settings.forceLaw != ForceLaw::series)
+        patch.linearBecause = std::string("the force law ") + name(settings.forceLaw) + " does not feel the plate";
+    else if (const auto why = whyUnsolvable(shell))
+        patch.linearBecause = *why;
+    else
+        patch.large = largeLaw(shell, unitLoad(patch.plate.grid, settings), patch.response, kTrusted * patch.thickness,
+                               solver, std::max(settings.tolerance, kShapesTolerance));
+}
+
 constexpr double kDense = 0.3; ///< spacing over the side of the cubes below which one point per cube will do [1]
 
 /// Returns whether the surface hardly turns within a few cubes of a place, so that their mean points show what it is.
@@ -602,7 +621,8 @@ Patch deform(const SoftObject& object, const Contact& contact, const PatchSettin
     if (!makePlate(patch, used, contact, settings, carried)) return patch;
     bendPlate(patch, settings, solver);   // 2.5: and bends as a plate under a unit force;
     movePoints(patch);                    // 2.6: the plate moves the points,
-    findStiffness(patch, used, settings); //      and with the contact it is what the hand feels.
+    findStiffness(patch, used, settings); //      and with the contact it is what the hand feels,
+    pressDeeper(patch, settings, solver); //      also where it is pressed far.
     return patch;
 }
 
@@ -634,6 +654,7 @@ Patch deformWithTable(const SoftObject& object, const Contact& contact, const Pa
     bendPlate(patch, settings, lattice, solver, table);
     movePoints(patch);
     findStiffness(patch, used, settings);
+    pressDeeper(patch, settings, solver);
     return patch;
 }
 
