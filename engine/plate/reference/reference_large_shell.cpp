@@ -2,12 +2,29 @@
 
 #include <cmath>
 
+#include <Eigen/SparseCholesky>
+
 #include "engine/core/quantity.h"
 #include "engine/plate/reference/detail/shell_unknowns.h"
 #include "engine/plate/shell_energy.h"
 
 namespace palp {
 namespace {
+
+using Matrix  = Eigen::SparseMatrix<double>;
+using Factors = Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
+
+Matrix matrixOf(const ShellEntries& entries, int count)
+{
+    Matrix matrix(count, count);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    return matrix;
+}
+
+Eigen::VectorXd vectorOf(const std::vector<double>& values)
+{
+    return Eigen::Map<const Eigen::VectorXd>(values.data(), Eigen::Index(values.size()));
+}
 
 /// Adds the second derivative of T at a state.
 void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Plate& membrane, const NodeField& w,
@@ -19,8 +36,8 @@ void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Plate& mem
             for (std::size_t n = 0; n < std::size_t(b.count); ++n) {
                 const int row = ofA[std::size_t(a.node[m])], column = ofB[std::size_t(b.node[n])];
                 if (row == kHeldUnknown || column == kHeldUnknown) continue;
-                entries.emplace_back(row, column, k * a.factor[m] * b.factor[n]);
-                entries.emplace_back(column, row, k * a.factor[m] * b.factor[n]);
+                entries.push_back({{row, column}, k * a.factor[m] * b.factor[n]});
+                entries.push_back({{column, row}, k * a.factor[m] * b.factor[n]});
             }
     };
     visitStretchTerms(membrane, [&](const StretchTerm& term) {
@@ -35,7 +52,7 @@ void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Plate& mem
 Eigen::VectorXd gradientOfStretch(const ShellUnknowns& of, const Plate& membrane, const NodeField& w,
                                   const NodeField& phi)
 {
-    Eigen::VectorXd gradient = of.rightSide(stretchForces(membrane, phi, w));
+    Eigen::VectorXd gradient = vectorOf(of.rightSide(stretchForces(membrane, phi, w)));
     const NodeField load     = stretchOf(membrane, w, w);
     for (std::size_t n = 0; n < of.ofPhi.size(); ++n)
         if (of.ofPhi[n] != kHeldUnknown) gradient[of.ofPhi[n]] = of.phiUnit * load.values()[n] / 2;
@@ -46,8 +63,8 @@ Eigen::VectorXd gradientOfStretch(const ShellUnknowns& of, const Plate& membrane
 class Press {
 public:
     Press(const Shell& shell, const NodeField& unitLoad)
-        : unknowns_(shell), membrane_(membraneOf(shell)), linear_(unknowns_.matrixOf(unknowns_.entries)),
-          load_(unknowns_.rightSide(unitLoad)), x_(Eigen::VectorXd::Zero(unknowns_.count))
+        : unknowns_(shell), membrane_(membraneOf(shell)), linear_(matrixOf(unknowns_.entries, unknowns_.count)),
+          load_(vectorOf(unknowns_.rightSide(unitLoad))), x_(Eigen::VectorXd::Zero(unknowns_.count))
     {
     }
 
@@ -59,7 +76,7 @@ public:
             const double change = step(depth);
             if (!std::isfinite(change)) break;
             if (change < kClose * x_.lpNorm<Eigen::Infinity>())
-                return {depth, force_, unknowns_.deflection(x_), unknowns_.stressFunction(x_), n};
+                return {depth, force_, unknowns_.deflection(state()), unknowns_.stressFunction(state()), n};
         }
         throw Error("Newton's method found no equilibrium of the shell at a depth of " + formatQuantity(depth, "m") +
                     "; go there in smaller steps");
@@ -69,10 +86,10 @@ private:
     /// Makes one step of Newton's method; returns its size [m].
     double step(double depth)
     {
-        const NodeField w = unknowns_.deflection(x_), phi = unknowns_.stressFunction(x_);
+        const NodeField w = unknowns_.deflection(state()), phi = unknowns_.stressFunction(state());
         ShellEntries    entries = unknowns_.entries;
         addStretch(entries, unknowns_, membrane_, w, phi);
-        factors_.compute(unknowns_.matrixOf(entries));
+        factors_.compute(matrixOf(entries, unknowns_.count));
         if (factors_.info() != Eigen::Success) return NAN;
         const Eigen::VectorXd rest    = -(linear_ * x_ + gradientOfStretch(unknowns_, membrane_, w, phi));
         const Eigen::VectorXd unit    = factors_.solve(load_);
@@ -83,12 +100,14 @@ private:
         return change.lpNorm<Eigen::Infinity>();
     }
 
+    [[nodiscard]] std::span<const double> state() const { return {x_.data(), std::size_t(x_.size())}; }
+
     ShellUnknowns   unknowns_;
     Plate           membrane_;
-    ShellMatrix     linear_;
+    Matrix          linear_;
     Eigen::VectorXd load_, x_;
     double          force_ = 0; // [N]
-    ShellFactors    factors_;
+    Factors         factors_;
 };
 
 } // namespace

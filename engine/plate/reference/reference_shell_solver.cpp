@@ -1,16 +1,25 @@
 #include "engine/plate/reference/reference_shell_solver.h"
 
+#include <Eigen/SparseCholesky>
+
 #include "engine/plate/reference/detail/shell_unknowns.h"
 
 namespace palp {
+namespace {
+
+using Matrix  = Eigen::SparseMatrix<double>;
+using Factors = Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
+
+} // namespace
 
 struct ReferenceShellSolver::Impl {
     ShellUnknowns unknowns;
-    ShellMatrix   matrix;
-    ShellFactors  factors;
+    Matrix        matrix;
+    Factors       factors;
 
-    explicit Impl(const Shell& shell) : unknowns(shell), matrix(unknowns.matrixOf(unknowns.entries))
+    explicit Impl(const Shell& shell) : unknowns(shell), matrix(unknowns.count, unknowns.count)
     {
+        matrix.setFromTriplets(unknowns.entries.begin(), unknowns.entries.end());
         unknowns.entries = {};
         // The blocks on the diagonal are positive and negative definite: every order of elimination has its factors.
         factors.compute(matrix);
@@ -29,16 +38,18 @@ ReferenceShellSolver& ReferenceShellSolver::operator=(ReferenceShellSolver&&) no
 
 ShellSolution ReferenceShellSolver::solve(const NodeField& nodalForce) const
 {
-    const Eigen::VectorXd right      = impl_->unknowns.rightSide(nodalForce);
-    Eigen::VectorXd       x          = impl_->factors.solve(right);
-    const Eigen::VectorXd remainder  = right - impl_->matrix * x;
-    const Eigen::VectorXd correction = impl_->factors.solve(remainder);
+    const std::vector<double> forces    = impl_->unknowns.rightSide(nodalForce);
+    const Eigen::VectorXd     right     = Eigen::Map<const Eigen::VectorXd>(forces.data(), Eigen::Index(forces.size()));
+    Eigen::VectorXd           x         = impl_->factors.solve(right);
+    const Eigen::VectorXd     remainder = right - impl_->matrix * x;
+    const Eigen::VectorXd     correction = impl_->factors.solve(remainder);
     x += correction;
     if (!x.allFinite())
         throw Error("the shell's deflection is not finite: loads, rigidities or curvatures are too large or too small "
                     "for double precision; check their units");
-    const double size = x.lpNorm<Eigen::Infinity>();
-    return {impl_->unknowns.deflection(x), impl_->unknowns.stressFunction(x),
+    const double                  size = x.lpNorm<Eigen::Infinity>();
+    const std::span<const double> found(x.data(), std::size_t(x.size()));
+    return {impl_->unknowns.deflection(found), impl_->unknowns.stressFunction(found),
             size > 0 ? correction.lpNorm<Eigen::Infinity>() / size : 0};
 }
 

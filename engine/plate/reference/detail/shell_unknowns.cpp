@@ -38,7 +38,7 @@ void addEnergy(ShellEntries& entries, const Plate& plate, const std::vector<int>
             for (std::size_t n = 0; n < std::size_t(b.count); ++n) {
                 const int row = numberOf[std::size_t(a.node[m])], column = numberOf[std::size_t(b.node[n])];
                 if (row != kHeldUnknown && column != kHeldUnknown)
-                    entries.emplace_back(row, column, scale * k * a.factor[m] * b.factor[n]);
+                    entries.push_back({{row, column}, scale * k * a.factor[m] * b.factor[n]});
             }
     };
     visitTerms(plate, [&](const EnergyTerm& term) {
@@ -58,8 +58,8 @@ void addCoupling(ShellEntries& entries, const Shell& shell, const Plate& membran
         for (std::size_t m = 0; m < std::size_t(term.force.count); ++m) {
             const int column = ofPhi[std::size_t(term.force.node[m])];
             if (row == kHeldUnknown || column == kHeldUnknown) continue;
-            entries.emplace_back(row, column, scale * term.stiffness * term.force.factor[m]);
-            entries.emplace_back(column, row, scale * term.stiffness * term.force.factor[m]);
+            entries.push_back({{row, column}, scale * term.stiffness * term.force.factor[m]});
+            entries.push_back({{column, row}, scale * term.stiffness * term.force.factor[m]});
         }
     });
 }
@@ -83,28 +83,21 @@ ShellUnknowns::ShellUnknowns(const Shell& shell) : grid(shell.bending.grid)
     addCoupling(entries, shell, membrane, ofW, ofPhi, phiUnit);
 }
 
-NodeField ShellUnknowns::spread(const Eigen::VectorXd& x, const std::vector<int>& numberOf, double unit) const
+NodeField ShellUnknowns::spread(std::span<const double> x, const std::vector<int>& numberOf, double unit) const
 {
     NodeField field(grid);
     for (std::size_t n = 0; n < numberOf.size(); ++n)
-        if (numberOf[n] != kHeldUnknown) field.values()[n] = unit * x[numberOf[n]];
+        if (numberOf[n] != kHeldUnknown) field.values()[n] = unit * x[std::size_t(numberOf[n])];
     return field;
 }
 
-Eigen::VectorXd ShellUnknowns::rightSide(const NodeField& nodalForce) const
+std::vector<double> ShellUnknowns::rightSide(const NodeField& nodalForce) const
 {
     PALP_EXPECT(nodalForce.on(grid), "forces on another grid");
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(count);
+    std::vector<double> right(std::size_t(count), 0);
     for (std::size_t n = 0; n < ofW.size(); ++n)
-        if (ofW[n] != kHeldUnknown) right[ofW[n]] = nodalForce.values()[n];
+        if (ofW[n] != kHeldUnknown) right[std::size_t(ofW[n])] = nodalForce.values()[n];
     return right;
-}
-
-ShellMatrix ShellUnknowns::matrixOf(const ShellEntries& from) const
-{
-    ShellMatrix matrix(count, count);
-    matrix.setFromTriplets(from.begin(), from.end());
-    return matrix;
 }
 
 } // namespace palp

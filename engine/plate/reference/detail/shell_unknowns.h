@@ -1,7 +1,6 @@
 #pragma once
+#include <span>
 #include <vector>
-
-#include <Eigen/SparseCholesky>
 
 #include "engine/plate/shell.h"
 
@@ -12,9 +11,16 @@ inline constexpr std::size_t kMostFactorisedNodes = 513 * 513;
 
 inline constexpr int kHeldUnknown = -1; ///< number of a node that is not an unknown
 
-using ShellMatrix  = Eigen::SparseMatrix<double>;
-using ShellFactors = Eigen::SimplicialLDLT<ShellMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
-using ShellEntries = std::vector<Eigen::Triplet<double>>;
+/// A part of an entry of the matrix; parts of the same entry add up.
+struct ShellEntry {
+    int    at[2];    ///< row, column
+    double part = 0; ///< [N/m]
+
+    [[nodiscard]] int    row() const noexcept { return at[0]; }
+    [[nodiscard]] int    col() const noexcept { return at[1]; }
+    [[nodiscard]] double value() const noexcept { return part; }
+};
+using ShellEntries = std::vector<ShellEntry>;
 
 /// The unknowns of both fields of a shell, w first, and the second derivative of its energy in them.
 struct ShellUnknowns {
@@ -28,14 +34,12 @@ struct ShellUnknowns {
     explicit ShellUnknowns(const Shell& shell);
 
     /// Returns a field of unknowns; 0 where the nodes are held.
-    [[nodiscard]] NodeField spread(const Eigen::VectorXd& x, const std::vector<int>& numberOf, double unit) const;
-    [[nodiscard]] NodeField deflection(const Eigen::VectorXd& x) const { return spread(x, ofW, 1); }
-    [[nodiscard]] NodeField stressFunction(const Eigen::VectorXd& x) const { return spread(x, ofPhi, phiUnit); }
+    [[nodiscard]] NodeField spread(std::span<const double> x, const std::vector<int>& numberOf, double unit) const;
+    [[nodiscard]] NodeField deflection(std::span<const double> x) const { return spread(x, ofW, 1); }
+    [[nodiscard]] NodeField stressFunction(std::span<const double> x) const { return spread(x, ofPhi, phiUnit); }
 
     /// Returns the right side of forces at the nodes [N].
-    [[nodiscard]] Eigen::VectorXd rightSide(const NodeField& nodalForce) const;
-
-    [[nodiscard]] ShellMatrix matrixOf(const ShellEntries& from) const;
+    [[nodiscard]] std::vector<double> rightSide(const NodeField& nodalForce) const;
 };
 
 } // namespace palp
