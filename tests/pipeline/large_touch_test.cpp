@@ -116,5 +116,22 @@ TEST(LargeTouch, SaysWhyItStaysLinear)
     EXPECT_TRUE(depthLawOf(patch).isSpring());
 }
 
+TEST(LargeTouch, OfATableItIsThatOfTheTouch)
+{
+    for (const auto& [object, settings] : {std::pair{flat(), kPlate}, std::pair{dome(), kShell}}) {
+        PatchSettings fine = settings;
+        fine.cells         = 64;
+        PlateSolver            host("host");
+        const FootprintLattice lattice = footprintLattice(object, fine, 3, host);
+        const Contact          contact = touchAt(object, {0, 0, 0}, glm::dvec3(0, 0, 1), 10e-3);
+        const Patch            one     = deform(object, contact, fine, host);
+        const PatchWithTable   table   = deformWithTable(object, contact, fine, lattice, host);
+        ASSERT_TRUE(one.large && table.patch.large);
+        EXPECT_NEAR(table.patch.large->tangent.front() / one.large->tangent.front(), 1, 1e-6); // of two solutions
+        for (std::size_t n = 1; n < one.large->force.size(); ++n) // the grid is twice as coarse: measured 0.4 %
+            EXPECT_NEAR(table.patch.large->force[n] / one.large->force[n], 1, 0.01) << n;
+    }
+}
+
 } // namespace
 } // namespace palp
