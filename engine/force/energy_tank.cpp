@@ -24,7 +24,7 @@ namespace {
 /// Returns what goes into a contact of this depth when its law changes [J].
 double riseOf(const DepthLaw& from, const DepthLaw& to, double depth) noexcept
 {
-    if (from.stiffening == 0 && to.stiffening == 0) return depth * depth * (to.stiffness - from.stiffness) / 2;
+    if (from.isSpring() && to.isSpring()) return depth * depth * (to.stiffness - from.stiffness) / 2;
     return to.energy(depth) - from.energy(depth);
 }
 
@@ -32,7 +32,8 @@ double riseOf(const DepthLaw& from, const DepthLaw& to, double depth) noexcept
 DepthLaw between(const DepthLaw& from, const DepthLaw& to, double share) noexcept
 {
     DepthLaw law{from.stiffness + (to.stiffness - from.stiffness) * share, to.stiffening, to.steepest};
-    if (from.stiffening == 0 && to.stiffening == 0) return law;
+    if (from.isSpring() && to.isSpring()) return law;
+    law.shape      = between(from.shape, to.shape, share);
     law.stiffening = from.stiffening + (to.stiffening - from.stiffening) * share;
     if (to.steepest > from.steepest) law.steepest = from.steepest + (to.steepest - from.steepest) * share;
     law.stiffness = std::min(law.stiffness, law.steepest);
@@ -47,7 +48,7 @@ void EnergyTank::takePartOf(const DepthLaw& wanted, double depth, double share) 
     const DepthLaw from = law_;
     law_                = between(from, wanted, share); // exact where the energy is linear in what changes
     const double most   = from.energy(depth) + share * riseOf(from, wanted, depth);
-    if (wanted.stiffening == 0 && from.stiffening == 0) return;
+    if (wanted.isSpring() && from.isSpring()) return;
     constexpr int kHalvings = 30; // of the share: 1e-9 of it
     double        enough = 0, tooMuch = share;
     if (law_.energy(depth) <= most) return;
@@ -77,7 +78,7 @@ EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
     // Cost of the step of stiffness at this depth, less what the hand paid. A fall that pushed nobody along the surface
     // gives its energy back; friction's loss is not credited. Outside all is free.
     EnergyTankOutput out;
-    const DepthLaw   wanted = DepthLaw::capped(in.stiffness, in.stiffening, in.steepest);
+    const DepthLaw   wanted = DepthLaw::capped(in.stiffness, in.stiffening, in.steepest, in.shape);
     const double     depth  = std::max(in.depth, 0.0);
     const double     rise   = in.storedShare * riseOf(law_, wanted, depth);
     const double     paid   = law_.secant(depth) * in.drag;

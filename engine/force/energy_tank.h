@@ -30,7 +30,8 @@ struct EnergyTankInput {
     double stiffening   = 0;                                       ///< [1/m] wanted, see DepthLaw
     double steepest     = std::numeric_limits<double>::infinity(); ///< [N/m] cap of its tangent
     /// [1] of the elastic energy that the contact stores: below 1 where its material has relaxed, see RelaxingContact.
-    double storedShare = 1;
+    double     storedShare = 1;
+    DepthShape shape{}; ///< of the sheet, wanted
 };
 
 struct EnergyTankOutput {

@@ -17,6 +17,7 @@
 #include "engine/contact/contact.h"
 #include "engine/core/enum_names.h"
 #include "engine/force/force_law.h"
+#include "engine/plate/large_law.h"
 #include "engine/plate/plate.h"
 #include "engine/plate/plate_solver.h"
 
@@ -44,6 +45,17 @@ constexpr auto namesOf(Theory)
     return std::to_array<NamedValue<Theory>>({{plate, "plate"}, {shell, "shell"}});
 }
 
+/// Whether a sheet that is pressed further than some half of its thickness resists in another way.
+enum class Large {
+    off, ///< the linear theory, however far: the paper's
+    on   ///< flat sheets harden and domes give way, see LargeLaw
+};
+constexpr auto namesOf(Large)
+{
+    using enum Large;
+    return std::to_array<NamedValue<Large>>({{off, "off"}, {on, "on"}});
+}
+
 /// The constants of a scene that decide what a touch feels like, apart from the object itself.
 ///
 /// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So
@@ -57,6 +69,7 @@ struct PatchSettings {
     Neighbourhood neighbourhood   = Neighbourhood::surface;
     Resampling    resampling      = Resampling::logMean;
     Theory        theory          = Theory::plate;
+    Large         large           = Large::off;
     PlateEdges    edges{}; ///< of the window; of a shell that is cut from a larger body best all supported
     ForceLaw      forceLaw  = ForceLaw::series;
     double        tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
@@ -79,8 +92,9 @@ struct Patch {
         false; ///< the points around determine no surface that agrees with the hand's: the proxy's is taken
     double      unrolled = 0; ///< share of the exponential map in the positions [1]; 0: the sphere follows the surface
     PatchWindow window;
-    Plate       plate;                ///< rigidity at the nodes, edges, foundation
-    NodeField   membraneCompliance{}; ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell
+    Plate       plate; ///< rigidity at the nodes, edges, foundation
+    NodeField
+        membraneCompliance{}; ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell or large deflections
     /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
     std::optional<CurvatureField> curvature;
     std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not
@@ -91,12 +105,15 @@ struct Patch {
     double      noise       = 0; ///< standard deviation of the points there about the surface [m]
     double      thickness   = 0; ///< of the object at the contact [m]
     std::size_t nodesWithoutPoint = 0; ///< see Resampled
-    NodeField   response;              ///< deflection per force at the nodes [m/N]
-    double      compliance       = 0;  ///< c: response averaged over the footprint, work-conjugate [m/N]
-    double      contactStiffness = 0;  ///< k_c [N/m]
-    double      feltStiffness    = 0;  ///< [N/m]
-    double      stiffening       = 0;  ///< b under the footprint [1/m], see DepthLaw
-    NodeField   stiffeningAtNodes;     ///< [1/m]; empty: b is the same everywhere
+    /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.
+    std::optional<LargeLaw> large;
+    std::string             linearBecause;        ///< why it is not there although it was asked for
+    NodeField               response;             ///< deflection per force at the nodes [m/N]
+    double                  compliance       = 0; ///< c: response averaged over the footprint, work-conjugate [m/N]
+    double                  contactStiffness = 0; ///< k_c [N/m]
+    double                  feltStiffness    = 0; ///< [N/m]
+    double                  stiffening       = 0; ///< b under the footprint [1/m], see DepthLaw
+    NodeField               stiffeningAtNodes;    ///< [1/m]; empty: b is the same everywhere
 
     /// The object that was touched in place of one far denser than the grid; empty: the object itself. The points below
     /// are its.

@@ -77,6 +77,21 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }
 
+/// Says where the deflection is beyond the theory: half the thickness, or twice it if large deflections are on.
+void addTooDeep(std::vector<std::string>& result, const Patch& patch, double deepest, double load)
+{
+    const double most = patch.large ? patch.large->reach() : patch.thickness / 2;
+    if (!(deepest > most)) return;
+    const DepthLaw law  = depthLawOf(patch);
+    const double   less = load * most / deepest;
+    if (patch.large)
+        return result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds twice the thickness (" +
+                                formatQuantity(most, "m") + "), to which the law of large deflections is trusted");
+    result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
+                     formatQuantity(most, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
+                     formatQuantity(patch.stiffening > 0 ? law.force(less / patch.feltStiffness) : less, "N"));
+}
+
 } // namespace
 
 std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force,
@@ -90,14 +105,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
                          " or more, relative; try fewer cells or less contrast");
     const double load    = pressOf(patch, material, std::abs(force)).load;
     const double deepest = load * largest(patch.response);
-    const double half    = patch.thickness / 2;
-    if (deepest > half)
-        result.push_back(
-            "the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
-            formatQuantity(half, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
-            formatQuantity(patch.stiffening > 0 ? depthLawOf(patch).force(load * half / deepest / patch.feltStiffness)
-                                                : load * half / deepest,
-                           "N"));
+    addTooDeep(result, patch, deepest, load);
     if (patch.nodesWithoutPoint > 0)
         result.push_back(
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +

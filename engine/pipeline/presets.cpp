@@ -14,6 +14,7 @@ PatchSettings withPreset(PatchSettings settings, Preset preset)
     settings.edges         = {};
     if (paper) settings.foundation = 0;
     if (paper) settings.theory = Theory::plate;
+    if (paper) settings.large = Large::off;
     return settings;
 }
 
@@ -32,6 +33,8 @@ std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
     if (settings.theory != Theory::plate)
         lines.push_back(std::string("theory ") + name(settings.theory) +
                         ", the paper's is a plate: what is curved is as soft as what is flat");
+    if (settings.large == Large::on)
+        lines.push_back("large deflections, the paper has none: a dent of any depth is as stiff as a shallow one");
     if (settings.edges != PlateEdges{}) lines.push_back("edges other than clamped, the paper's are clamped");
     if (settings.foundation != 0)
         lines.push_back("elastic foundation of " + formatQuantity(settings.foundation, "Pa/m") +

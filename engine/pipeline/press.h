@@ -5,11 +5,16 @@
 
 namespace palp {
 
+/// Returns how the tangent changes with the hand's depth where the plate is pressed far: contact, and shear across a
+/// shell, are springs in series with it. None for a linear patch.
+[[nodiscard]] DepthShape depthShapeOf(const Patch& patch) noexcept;
+
 /// The elastic law of a patch, without a cap: that of the place, not of a device.
 [[nodiscard]] DepthLaw depthLawOf(const Patch& patch) noexcept;
 
 /// What a force does to a patch. Where the force stiffens with depth, the dent does not grow with the force, but with
-/// the depth: it is the one that `load` makes of a linear plate. A linear material has load = force, to the bit.
+/// the depth: it is the one that `load` makes of a linear plate. The same holds of a sheet that is pressed far. A linear
+/// one has load = force, to the bit.
 struct Press {
     double depth = 0; ///< of the hand at once [m]
     double load  = 0; ///< times the patch's response is the dent [N]

@@ -5,6 +5,7 @@
 #include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
 #include "engine/force/ahead.h"
+#include "engine/pipeline/press.h"
 #include "engine/session/approach.h"
 
 namespace palp {
@@ -100,6 +101,7 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         update.mostResponse   = *std::max_element(w.begin(), w.end());
         update.errorEstimate  = patch.report.errorEstimate.value_or(0);
         update.iterations     = patch.report.iterations.value_or(0);
+        update.shape          = depthShapeOf(patch);
         return {slot, std::move(patch), {}};
     } catch (const Error& error) { // the window is off the object, or the plate has no solution there
         return {{}, {}, error.what()};

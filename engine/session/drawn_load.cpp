@@ -9,7 +9,7 @@ namespace palp {
 double drawnLoad(const TickRecord& record, const Patch* patch, const Material& material) noexcept
 {
     const double force = glm::length(record.force);
-    if (!patch || !patch->deformed() || (material.isLinear() && patch->stiffening == 0)) return force;
+    if (!patch || !patch->deformed() || (material.isLinear() && patch->stiffening == 0 && !patch->large)) return force;
     const double most = *std::ranges::max_element(patch->response.values());
     return most > 0 ? record.maxDeflection / most : force;
 }

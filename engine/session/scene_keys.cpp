@@ -447,6 +447,12 @@ std::vector<SceneKey> patchKeys()
                  "that is curved; a shell's edges are supported unless edges says otherwise",
              .group = kTouch},
             [](auto& s) -> auto& { return s.patch.theory; }),
+        wordKey(
+            {.name  = "large",
+             .help  = "whether a sheet resists in another way where it is pressed further than half its thickness: on, "
+                      "flat ones harden and domes give way, trusted to two thicknesses; off, the linear theory",
+             .group = kTouch},
+            [](auto& s) -> auto& { return s.patch.large; }),
         {.name   = "edges",
          .help   = "edges of the patch window: one name for all, or SIDE=EDGE of the sides x0, x1, z0, z1",
          .group  = kTouch,
@@ -648,6 +654,7 @@ std::map<std::string, std::string, std::less<>> presetValues(Preset preset)
     if (preset == Preset::paper) { // the paper's sheet has none of these
         values["foundation"] = plainNumber(set.foundation);
         values["theory"]     = name(set.theory);
+        values["large"]      = name(set.large);
         values["stiffening"] = "0";
         values["relaxation"] = "none";
     }

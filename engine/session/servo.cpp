@@ -73,7 +73,31 @@ ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const H
 {
 }
 
-ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const Hand& hand,
+/// Goes towards the newest shape within some periods of the deformation, so that no step is felt; in free space at once.
+void ForceHalf::follow(const PatchUpdate* newest, double dt, bool touching) noexcept
+{
+    if (newest && newest->table.sequence != shapeOf_ && newest->table.usable() && newest->shape.usable()) {
+        shapeOf_     = newest->table.sequence;
+        newestShape_ = newest->shape;
+    }
+    if (shape_ == newestShape_) return;
+    const double share = touching ? -std::expm1(-std::max(dt, 0.0) / patchPeriod_) : 1;
+    shape_             = share < 1 ? between(shape_, newestShape_, share) : newestShape_;
+}
+
+namespace {
+
+/// Returns the force that dents a linear plate as deep as this one is under a hand of this depth [N]. What lies in
+/// series with the plate of compliance c is a spring.
+double loadAt(const DepthLaw& law, double depth, double c) noexcept
+{
+    if (law.shape.step == 0 || !(law.stiffness > 0) || !(c > 0)) return law.stiffness * depth;
+    return std::max(0.0, (depth - law.force(depth) * (1 / law.stiffness - c)) / c);
+}
+
+} // namespace
+
+ForceHalf::WantedForce ForceHalf::wantedForce(const std::optional<LocalCompliance>& local, double dt, const Hand& hand,
                                               const ProxyContact& held) noexcept
 {
     const glm::dvec3& outward = held.touch.outward; // of the surface, whichever way friction tilts the pull
@@ -84,7 +108,7 @@ ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const
 
     const double depth = glm::length(held.pull), surface = depth > 0 ? std::max(depth, relaxing_.surface()) : depth;
     const EnergyTankOutput tank =
-        tank_.step({.stiffness       = stiffness * scale_,
+        tank_.step({.stiffness       = stiffnessOf(local) * scale_,
                     .depth           = surface / scale_,
                     .normalSpeed     = along / scale_,
                     .tangentialSpeed = glm::length(tangent(hand.velocity)) / scale_,
@@ -93,11 +117,13 @@ ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const
                     .spareDamping    = governor_.spareDamping(),
                     .stiffening      = stiffening_ * scale_,
                     .steepest        = governor_.stiffnessCap(),
-                    .storedShare     = relaxing_.storedShare()});
+                    .storedShare     = relaxing_.storedShare(),
+                    .shape           = {shape_.step / scale_, shape_.tangents}});
 
     const DepthLaw law = inScene(tank.law);
-    WantedForce    result{{}, law.secant(depth), law.tangent(depth), tank.used * scale_, tank.stored * scale_};
-    result.load = law.stiffness * depth;
+    WantedForce    result{{}, law.secant(depth), law.mostTangent(depth), tank.used * scale_, tank.stored * scale_};
+    plateCompliance_ = local ? local->compliance : 0;
+    result.load      = loadAt(law, depth, plateCompliance_);
     if (relaxing_.relaxes()) relax(result, law, dt, held);
     result.force = result.stiffness * held.pull;
     return result;
@@ -106,7 +132,10 @@ ForceHalf::WantedForce ForceHalf::wantedForce(double stiffness, double dt, const
 /// Returns a law of the device's metres in those of the scene.
 DepthLaw ForceHalf::inScene(const DepthLaw& atDevice) const noexcept
 {
-    return {atDevice.stiffness / scale_, atDevice.stiffening / scale_, atDevice.steepest / scale_};
+    return {atDevice.stiffness / scale_,
+            atDevice.stiffening / scale_,
+            atDevice.steepest / scale_,
+            {atDevice.shape.step * scale_, atDevice.shape.tangents}};
 }
 
 /// Takes from the elastic force what the material under the finger has got used to.
@@ -118,7 +147,7 @@ void ForceHalf::relax(WantedForce& want, const DepthLaw& law, double dt, const P
     want.stiffness *= forceShare_;
     want.admitted += out.refreshed;
     want.stored = depth > 0 ? out.stored : 0; // what a surface stores that was left, no hand gets back
-    want.load   = law.stiffness * relaxing_.surface();
+    want.load   = loadAt(law, relaxing_.surface(), plateCompliance_);
 }
 
 /// Returns the force that dents the plate as it is drawn [N]. A plate is linear, and stiffens only together with the
@@ -126,7 +155,7 @@ void ForceHalf::relax(WantedForce& want, const DepthLaw& law, double dt, const P
 double ForceHalf::plateLoad(const WantedForce& want, const GovernorOutput& out, const ProxyContact& held) const noexcept
 {
     const double pressed = std::max(0.0, glm::dot(out.force, held.touch.outward));
-    if (linear_ && stiffening_ == 0) return pressed;
+    if (isSpring()) return pressed;
     const double     wanted = glm::length(want.force), pull = glm::length(held.pull);
     constexpr double kSome = 1e-3; // [1] of the load: below it a force says nothing about the share that is rendered
     const double     share = wanted > kSome * want.load ? std::min(1.0, glm::length(out.force) / wanted) : out.gain;
@@ -149,9 +178,9 @@ double ForceHalf::stiffeningOf(const std::optional<LocalCompliance>& local) cons
 /// Returns what a contact at one place stores, as a multiple of what it does at the other [1].
 double ForceHalf::storedRatio(const LocalCompliance& one, const LocalCompliance& other, double depth) const noexcept
 {
-    const DepthLaw here{stiffnessOf(one), stiffeningOf(one), steepest()};
-    const DepthLaw there{stiffnessOf(other), stiffeningOf(other), steepest()};
-    if (here.stiffening == 0 && there.stiffening == 0) return here.stiffness / there.stiffness;
+    const DepthLaw here{stiffnessOf(one), stiffeningOf(one), steepest(), shape_};
+    const DepthLaw there{stiffnessOf(other), stiffeningOf(other), steepest(), shape_};
+    if (here.isSpring() && there.isSpring()) return here.stiffness / there.stiffness;
     const double more = here.energy(depth), less = there.energy(depth);
     return more > 0 && less > 0 ? more / less : 1;
 }
@@ -179,7 +208,7 @@ void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand, const WantedF
 {
     if (held.touch.touching) {
         StiffnessSlope slope = slopeAt(held);
-        if (!(linear_ && stiffening_ == 0) && want.stiffness > 0) slope.leverage = want.stored / want.stiffness;
+        if (!isSpring() && want.stiffness > 0) slope.leverage = want.stored / want.stiffness;
         lean_.step(slope, held.pull, glm::length(hand.position - lastHand_));
     } else {
         lean_.end();
@@ -212,7 +241,8 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     const auto handed  = compliance_.tick({touch.point - held.lean, now.time, now.dt, newest ? &newest->table : nullptr,
                                            touch.touching}); // also in free space
     stiffening_        = stiffeningOf(handed);
-    const WantedForce want = wantedForce(stiffnessOf(handed), now.dt, hand, held);
+    follow(newest, now.dt, touch.touching);
+    const WantedForce want = wantedForce(handed, now.dt, hand, held);
     leanOn(held, hand, want);
 
     const GovernorInput  in     = governorInput(now, hand, held, want, newest);
@@ -234,7 +264,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
         flag(SessionFlag::stalePatch, record.patchAge > kStalePeriods * patchPeriod_) |
         flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
         flag(SessionFlag::noPatch, touch.touching && !handed) | flag(SessionFlag::proxyLimited, held.limited) |
-        flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ / 2) |
+        flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ * (shape_.step > 0 ? 2 : 0.5)) |
         flag(SessionFlag::oldTable, in.overdue > 0) | flag(SessionFlag::governed, touch.touching && out.actions != 0);
     return record;
 }

@@ -27,6 +27,7 @@ struct PatchUpdate {
     double          mostResponse  = 0; ///< largest deflection per force [m/N]
     double          errorEstimate = 0; ///< of the plate's solution, relative [1]
     std::int32_t    iterations    = 0; ///< of the plate's solver
+    DepthShape      shape{};           ///< of the force over the depth of the hand, see Large; none: it is straight
 };
 
 /// The servo's message to the deformation about the touch.
@@ -45,7 +46,7 @@ enum class SessionFlag : std::uint32_t {
     beyondTable  = 1U << 9,  ///< the contact lies beyond the table's reach, or no table was there yet
     noPatch      = 1U << 10, ///< in contact, and no answer of the plate yet: no force
     proxyLimited = 1U << 11, ///< the proxy ran out of iterations
-    beyondTheory = 1U << 12, ///< the deflection exceeds half the thickness: Kirchhoff's plate does not hold
+    beyondTheory = 1U << 12, ///< the deflection exceeds half the thickness, or twice it with large deflections
     governed     = 1U << 13, ///< the governor held the force back: damped, clamped, slewed, waiting or coming on
     oldTable     = 1U << 14  ///< the plate's answer is too old to feel: the force fades in 20 ms, and engages anew
 };
@@ -185,7 +186,7 @@ private:
         double     stored    = 0; ///< [J]
         double     load      = 0; ///< [N] that dents the plate as deep as the hand is in it
     };
-    [[nodiscard]] WantedForce wantedForce(double stiffness, double dt, const Hand& hand,
+    [[nodiscard]] WantedForce wantedForce(const std::optional<LocalCompliance>& local, double dt, const Hand& hand,
                                           const ProxyContact& held) noexcept;
     void                 relax(WantedForce& want, const DepthLaw& law, double dt, const ProxyContact& held) noexcept;
     [[nodiscard]] double plateLoad(const WantedForce& want, const GovernorOutput& out,
@@ -200,6 +201,10 @@ private:
     [[nodiscard]] double   steepest() const noexcept { return governor_.stiffnessCap() / scale_; } ///< [N/m]
     [[nodiscard]] DepthLaw inScene(const DepthLaw& atDevice) const noexcept;
 
+    /// Returns whether force and dent are the pull times a constant.
+    [[nodiscard]] bool isSpring() const noexcept { return linear_ && stiffening_ == 0 && shape_.step == 0; }
+    void               follow(const PatchUpdate* newest, double dt, bool touching) noexcept;
+
     [[nodiscard]] double        tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept;
     [[nodiscard]] GovernorInput governorInput(const TickTime& now, const Hand& hand, const ProxyContact& held,
                                               const WantedForce& want, const PatchUpdate* newest) noexcept;
@@ -207,12 +212,16 @@ private:
                                          const WantedForce& want, const GovernorOutput& out) const noexcept;
 
     ForceLaw          law_;
-    double            thickness_;   ///< [m]
-    bool              linear_;      ///< the material's force is stiffness times depth, if b is 0 here too
-    double            ofScene_;     ///< b of the scene [1/m]
-    double            stiffening_;  ///< b in this tick [1/m]
-    double            patchPeriod_; ///< of the deformation [s]
-    double            scale_;       ///< metres of the scene per metre of the device [1]
+    double            thickness_;           ///< [m]
+    bool              linear_;              ///< the material's force is stiffness times depth, if b is 0 here too
+    double            ofScene_;             ///< b of the scene [1/m]
+    double            stiffening_;          ///< b in this tick [1/m]
+    DepthShape        shape_;               ///< of the force in this tick
+    DepthShape        newestShape_;         ///< what it follows
+    std::uint64_t     shapeOf_         = 0; ///< sequence of the table that it came with
+    double            plateCompliance_ = 0; ///< c in this tick [m/N]
+    double            patchPeriod_;         ///< of the deformation [s]
+    double            scale_;               ///< metres of the scene per metre of the device [1]
     AnswerPeriod      answers_;
     ComplianceTracker compliance_;
     LateralLean       lean_;

@@ -387,5 +387,23 @@ TEST(LateralLean, IsBoundedAndNeverJumps)
     }
 }
 
+TEST(EnergyTank, AShapeThatRisesUnderALoadedFingerIsPaidFor)
+{
+    EnergyTank tank({.limit = 2e-3, .start = 0.01e-3, .damping = 0, .power = 0});
+    DepthShape harder{.step = 0.2e-3};
+    for (std::size_t n = 0; n < harder.tangents.size(); ++n) harder.tangents[n] = 1 + 0.5 * double(n);
+    const EnergyTankInput soft{.stiffness = 100, .depth = 2e-3, .dt = 1e-3};
+    EnergyTankInput       hard = soft;
+    hard.shape                 = harder;
+    tank.step({.stiffness = 100, .depth = 0, .dt = 1e-3}); // in free space all is free
+    const double before = tank.step(soft).stored, wanted = DepthLaw::capped(100, 0, 1e9, harder).energy(2e-3);
+    ASSERT_GT(wanted - before, 0.1e-3);
+    const EnergyTankOutput out = tank.step(hard);
+    EXPECT_LE(out.stored - before, out.used * (1 + 1e-6)); // what the halvings leave
+    EXPECT_LE(out.used, 0.01e-3);
+    EXPECT_GT(out.stored, before); // as far as the tank pays
+    EXPECT_EQ(tank.step(soft).law.shape, DepthShape{});
+}
+
 } // namespace
 } // namespace palp

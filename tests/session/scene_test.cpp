@@ -134,12 +134,13 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
         "thickness": "0.5 cm", "poisson": -0.2, "foundation": "2 MPa/m", "window": 0.05, "cells": 32.0,
         "stiffening": "0.81 1/mm", "relaxation": "0.26@0.41s,0.31@4.3", "material": "meat",
         "footprint_radius": "3mm", "map": "gall-peters", "resampling": "nearest", "edges": {"x0": "free"},
-        "theory": "shell", "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
+        "theory": "shell", "large": "on", "force_law": "paper", "tolerance": 1e-6, "compliance_law": "blend", "table_size": 7, "deformation_rate": 30,
         "proxy": "sphere", "static_friction": 1, "dynamic_friction": 0, "max_force": "500 mN",
         "stiffness_cap": 800, "solver": "host", "place": [1e-3, 0, 0], "from": [0, 0, 2], "start_height": "2 cm",
         "workspace_scale": 3, "clutch_button": 2})");
 
     EXPECT_EQ(scene.patch.theory, Theory::shell);
+    EXPECT_EQ(scene.patch.large, Large::on);
     EXPECT_EQ(scene.workspaceScale, 3);
     EXPECT_EQ(scene.clutchButton, 2);
     EXPECT_EQ(scene.points, 1000u);

@@ -265,5 +265,48 @@ TEST(Tissue, APropertyOfTheFileIsThePointsStiffeningUnlessTheSceneStatesOne)
                       {"line 3", "point 1", "stiffening from 0 to", "found \"stiffening\" -3"}));
 }
 
+/// A sheet of 2 mm that is pressed further than it is thick.
+Scene thin(Large large)
+{
+    Scene made              = scene(kEven, 0, {});
+    made.material.thickness = 2e-3;
+    made.patch.foundation   = 0;
+    made.patch.large        = large;
+    return made;
+}
+
+TEST(LargeDeflection, AFingerFeelsAFlatSheetHarden)
+{
+    constexpr double              kDepth  = 2e-3;
+    const std::vector<TickRecord> linear  = run(thin(Large::off), handTo(kDepth, 2.3));
+    const std::vector<TickRecord> records = run(thin(Large::on), handTo(kDepth, 2.3));
+    const double                  K       = linear.back().stiffness;
+    EXPECT_NEAR(glm::length(linear.back().wanted) / (K * pullOf(linear.back())), 1, 1e-9);
+    // At a depth of one thickness, of which contact and plate have their shares: 1.46 of a clamped plate alone.
+    const double hardened = glm::length(records.back().wanted) / (K * pullOf(records.back()));
+    EXPECT_GT(hardened, 1.2);
+    EXPECT_LT(hardened, 1.5);
+    EXPECT_NEAR(records.back().stiffness / K, hardened, 0.01);
+    EXPECT_EQ(records.back().faults & static_cast<std::uint32_t>(SessionFlag::beyondTheory), 0U);
+    EXPECT_NE(linear.back().faults & static_cast<std::uint32_t>(SessionFlag::beyondTheory), 0U);
+    EXPECT_LE(records.back().maxDeflection, 1.1 * kDepth); // at its deepest, not the mean under the fingertip
+    EXPECT_GT(records.back().maxDeflection, 0.8 * kDepth);
+}
+
+TEST(LargeDeflection, AClosedStrokeGivesTheHandNothing)
+{
+    constexpr double kCycle = 0.8; // [s]
+    Scene            wart   = thin(Large::on);
+    wart.stiffness          = scene(kWart, 0, {}).stiffness;
+    const auto records      = run(wart, handTo(2e-3, 2.3 + 2.5 * kCycle, 10e-3, 1 / kCycle, true));
+    double     work = 0, most = 0; // [J]
+    for (std::size_t n = 1; n < records.size(); ++n) {
+        work += glm::dot(records[n].force + records[n - 1].force, records[n].hip - records[n - 1].hip) / 2;
+        most = std::max(most, glm::length(records[n].force) * 2e-3 / 2);
+    }
+    std::printf("  %.4f mJ to the hand, of %.3f mJ stored\n", work * 1e3, most * 1e3);
+    EXPECT_LT(work, 0.01e-3) << "a force is a tick late";
+}
+
 } // namespace
 } // namespace palp

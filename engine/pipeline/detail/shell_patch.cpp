@@ -59,6 +59,15 @@ std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject
                            .lengthRoot = lengthRoot(object.material())});
 }
 
+/// Fills in what the membrane gives way by.
+void fillMembrane(Patch& patch, const Material& material)
+{
+    patch.membraneCompliance = NodeField(patch.plate.grid);
+    for (std::size_t n = 0; n < patch.membraneCompliance.values().size(); ++n)
+        patch.membraneCompliance.values()[n] =
+            1 / (material.modulus(patch.plate.rigidity.values()[n]) * material.thickness);
+}
+
 /// Returns whether the membrane adds nothing that a solver's tolerance would show: the plate's own path is taken then.
 ///
 /// Of the window's slowest wave, bending resists by 4 pi^4 D / a^4 and the membrane of a sphere by k^2 / C.
@@ -84,8 +93,15 @@ PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
 
 Shell shellOf(const Patch& patch)
 {
-    return {patch.plate,        patch.membraneCompliance, stressEdgesFor(patch.plate.edges),
-            patch.curvature->x, patch.curvature->z,       patch.curvature->xz};
+    const auto curvature = [&](const NodeField CurvatureField::*which) {
+        return patch.curvature ? (*patch.curvature).*which : NodeField(patch.plate.grid);
+    };
+    return {patch.plate,
+            patch.membraneCompliance,
+            stressEdgesFor(patch.plate.edges),
+            curvature(&CurvatureField::x),
+            curvature(&CurvatureField::z),
+            curvature(&CurvatureField::xz)};
 }
 
 Shell homogeneousOf(const Shell& shell)
@@ -105,6 +121,7 @@ Shell homogeneousOf(const Shell& shell)
 
 void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
+    if (settings.large == Large::on) fillMembrane(patch, object.material());
     if (settings.theory == Theory::plate) return;
     const auto stayFlat = [&](const char* why) { patch.flatBecause = why; };
     if (settings.neighbourhood == Neighbourhood::ball)
@@ -114,10 +131,7 @@ void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& set
     if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
 
     const Material& material = object.material();
-    patch.membraneCompliance = NodeField(patch.plate.grid);
-    for (std::size_t n = 0; n < patch.membraneCompliance.values().size(); ++n)
-        patch.membraneCompliance.values()[n] =
-            1 / (material.modulus(patch.plate.rigidity.values()[n]) * material.thickness);
+    fillMembrane(patch, material);
     const int    middle = settings.cells / 2;
     const double x = patch.curvature->x(middle, middle), z = patch.curvature->z(middle, middle),
                  xz   = patch.curvature->xz(middle, middle);

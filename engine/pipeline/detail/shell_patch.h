@@ -8,7 +8,8 @@ namespace palp {
 /// \param object  that the patch's points are of
 void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings);
 
-/// Returns the shell of a patch that is one.
+/// Returns the shell of a patch, a flat one of a patch that is not curved.
+/// \pre its membrane's compliance is known: the settings ask for a shell or large deflections
 [[nodiscard]] Shell shellOf(const Patch& patch);
 
 /// Returns the edges of the membrane that go with a window's edges: a free one is a border of the object, where no force

@@ -19,13 +19,6 @@ Difference secondDifference(int index, int cells, Edge first, Edge last, int nod
     return d;
 }
 
-double valueOf(const Difference& d, const NodeField& w)
-{
-    double sum = 0;
-    for (std::size_t m = 0; m < std::size_t(d.count); ++m) sum += d.factor[m] * w.values()[std::size_t(d.node[m])];
-    return sum;
-}
-
 void subtract(NodeField& forces, const Difference& d, double force)
 {
     for (std::size_t m = 0; m < std::size_t(d.count); ++m)
@@ -33,6 +26,13 @@ void subtract(NodeField& forces, const Difference& d, double force)
 }
 
 } // namespace
+
+double valueOf(const Difference& d, const NodeField& field)
+{
+    double sum = 0;
+    for (std::size_t m = 0; m < std::size_t(d.count); ++m) sum += d.factor[m] * field.values()[std::size_t(d.node[m])];
+    return sum;
+}
 
 EnergyTerm bendingTerm(const Plate& plate, int i, int j)
 {

@@ -48,6 +48,9 @@ struct EnergyTerm {
     double     kpp = 0, kpq = 0, kqq = 0; ///< [N/m]
 };
 
+/// Returns the sum of the products of a difference with a field.
+[[nodiscard]] double valueOf(const Difference& d, const NodeField& field);
+
 [[nodiscard]] EnergyTerm bendingTerm(const Plate& plate, int i, int j);  ///< of a node
 [[nodiscard]] EnergyTerm twistingTerm(const Plate& plate, int i, int j); ///< of the cell whose first corner is (i, j)
 [[nodiscard]] EnergyTerm foundationTerm(const Plate& plate, int i, int j);

@@ -75,6 +75,23 @@ Json shellJson(const Patch& patch, const PatchSettings& settings, PlateSolver& s
             {"felt_stiffness_clamped", range->clamped}};
 }
 
+/// What a touch says of deflections that are not small beside the thickness; null unless it was asked for.
+Json largeJson(const Patch& patch, const PatchSettings& settings, double force)
+{
+    if (settings.large == Large::off) return nullptr;
+    if (!patch.large) return {{"linear_because", patch.linearBecause}};
+    const LargeLaw& law    = *patch.large;
+    const double    linear = force / patch.feltStiffness, depth = depthLawOf(patch).depthOf(force);
+    Json            curve = Json::array();
+    for (std::size_t n = 0; n < law.force.size(); ++n)
+        curve.push_back({double(n) * law.step, law.force[n], law.tangent[n]});
+    return {{"depth_linear", linear},
+            {"depth", depth},
+            {"felt_stiffness", depth > 0 ? force / depth : patch.feltStiffness},
+            {"trusted_deflection", law.reach()},
+            {"plate", curve}};
+}
+
 Json timesJson(const StageTimes& t)
 {
     return {{"gather", t.gather},   {"fit", t.fit},     {"project", t.project}, {"resample", t.resample},
@@ -98,6 +115,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
             {"resampling", name(s.resampling)},
             {"force_law", name(s.forceLaw)},
             {"theory", name(s.theory)},
+            {"large", name(s.large)},
             {"edges",
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
 }
@@ -119,6 +137,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     report["noise"]                 = patch.noise;
     report["window"]                = windowJson(patch);
     report["shell"]                 = shellJson(patch, settings, solver);
+    report["large"]                 = largeJson(patch, settings, force);
     report["rigidity_at_contact"]   = patch.plate.rigidity(middle, middle);
     report["compliance"]            = patch.compliance;
     report["contact_stiffness"]     = patch.contactStiffness;

@@ -87,8 +87,8 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     else if (s.deviceFault != DeviceFault::none)
         say(std::string("the device reported a fault: ") + name(s.deviceFault) + words);
     if (s.beyondTheory > 0)
-        say("the deflection exceeded half the thickness in " + std::to_string(s.beyondTheory) +
-            " ticks: Kirchhoff plate theory does not hold there");
+        say("the deflection exceeded half the thickness, or twice it with large deflections, in " +
+            std::to_string(s.beyondTheory) + " ticks: the theory of the sheet does not hold there");
     if (s.beyondTable > 0)
         say("the contact left the table's reach in " + std::to_string(s.beyondTable) +
             " ticks: raise table_size or deformation_rate for fast hands");

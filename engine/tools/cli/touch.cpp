@@ -40,6 +40,19 @@ std::string percent(double share)
     return share > 0 && share < kLeast ? "below 0.001 %" : report::percent(share);
 }
 
+void printLarge(const nlohmann::json& large)
+{
+    if (large.contains("linear_because")) {
+        std::printf("  large deflection   linear, because %s\n", large["linear_because"].get<std::string>().c_str());
+        return;
+    }
+    std::printf(
+        "  large deflection   felt %s at this force, depth %s of the hand; linear %s; trusted to a deflection of "
+        "%s\n",
+        formatQuantity(large["felt_stiffness"], "N/m").c_str(), formatQuantity(large["depth"], "m").c_str(),
+        formatQuantity(large["depth_linear"], "m").c_str(), formatQuantity(large["trusted_deflection"], "m").c_str());
+}
+
 void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)
 {
     const PatchSettings& settings = scene.patch;
@@ -82,6 +95,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
             formatQuantity(shell["length"], "m").c_str(),
             formatQuantity(shell["felt_stiffness_supported"], "N/m").c_str(),
             formatQuantity(shell["felt_stiffness_clamped"], "N/m").c_str());
+    if (const auto& large = r["large"]; !large.is_null()) printLarge(large);
     if (!scene.material.isLinear() || r["stiffening"].get<double>() > 0)
         std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
                     quantity("depth", "m").c_str(), quantity("depth_relaxed", "m").c_str(),

@@ -49,7 +49,8 @@ std::vector<std::string> notesOn(const TickRecord& record, std::string_view word
         {SessionFlag::oldTable,
          "The plate has not answered for a quarter of a second, so the force is off: lift the hand, or choose fewer "
          "cells."},
-        {SessionFlag::beyondTheory, "The dent is deeper than half the thickness, where plate theory ends: press less."},
+        {SessionFlag::beyondTheory,
+         "The dent is deeper than half the thickness, or twice it with large on, where theory ends: press less."},
         {SessionFlag::beyondTable,
          "The contact is beyond the table of compliances: move more slowly, or raise the rate."},
         {SessionFlag::proxyLimited, "The proxy ran out of iterations: move more slowly."},
