@@ -9,7 +9,7 @@ namespace palp {
 std::filesystem::path unusedPath(const std::string& stem, const std::string& extension)
 {
     for (int n = 1; n < 10000; ++n) {
-        char number[8];
+        char number[16];
         std::snprintf(number, sizeof number, "-%04d", n);
         const std::filesystem::path path = stem + number + extension;
         if (!std::filesystem::exists(path)) return path;
