@@ -37,6 +37,10 @@ constexpr double kAlone = 3;
 /// it is. Just outside a dense half of a sheet it is 0.4.
 constexpr double kCovered = 0.6;
 
+/// A stray far from everything is known by its company [1]: of the points around the sparse side of a step, ten and more
+/// are as far from their neighbours. It takes the others' spacing too, or its ball would reach them and hold every hand.
+constexpr std::ptrdiff_t kFewStrays = 3;
+
 /// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay above zero.
 constexpr double kLeast = 0.05;
 
@@ -124,13 +128,18 @@ public:
             for (const std::uint32_t other : near_) values_.push_back(guess_[other]);
             spacings_[first] = median(values_);
             const bool alone = mine > kAlone * spacings_[first];
-            if (alone) spacings_[first] = std::min(mine, medianOfArea(values_, kMedianReach * mine));
+            if (alone && !isStray(mine)) spacings_[first] = std::min(mine, medianOfArea(values_, kMedianReach * mine));
             for (end = first + 1; end < run.end && end - first < kSharing && !alone && shares(first, end); ++end)
                 spacings_[end] = spacings_[first];
         }
     }
 
 private:
+    /// Returns whether hardly any other of the points in values_ is as far from its neighbours.
+    [[nodiscard]] bool isStray(double mine) const
+    {
+        return std::ranges::count_if(values_, [&](double its) { return kAlone * its > mine; }) <= kFewStrays;
+    }
     [[nodiscard]] bool shares(std::uint32_t first, std::uint32_t other) const
     {
         const glm::dvec3 d    = positions_[other] - positions_[first];

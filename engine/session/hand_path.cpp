@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/chart/chart.h"
+#include "engine/cloud/surface_flood.h"
 #include "engine/cloud/tokens.h"
 #include "engine/contact/contact.h"
 #include "engine/core/contract.h"
@@ -379,15 +380,20 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& 
     const double               spacing   = object.spacing();
     const double               radius    = kReach * spacing;
     std::vector<HandPose>      waypoints = hand.waypoints();
-    std::vector<std::uint32_t> near;
+    std::vector<std::uint32_t> near, own;
+    SurfaceFlood               flood(object); // a thin body has another face within the radius
     // Heights are looked for around the last one: where the hand has come from, the surface is known. The search starts
     // at the place and walks to the first waypoint in steps of a spacing.
     double     height = 0; // [m] above the plane through the place
     const auto follow = [&](const glm::dvec3& inPlane) {
-        object.index().gather(place.point + inPlane + height * place.outward, radius, near);
+        const glm::dvec3 last = place.point + inPlane + height * place.outward;
+        object.index().gather(last, radius, near);
+        const auto touched = flood.reachIn(near, last, place.outward);
+        own.assign(touched.begin(), touched.end());
+        std::ranges::sort(own); // the flood's order depends on where it starts
         double sum = 0, weights = 0;
-        for (const std::uint32_t point : near) {
-            const glm::dvec3 d      = object.positions()[point] - place.point;
+        for (const std::uint32_t n : own) {
+            const glm::dvec3 d      = object.positions()[near[n]] - place.point;
             const double     h      = glm::dot(d, place.outward);
             const glm::dvec3 beside = d - h * place.outward - inPlane;
             const double     share  = 1 - glm::dot(beside, beside) / (radius * radius);

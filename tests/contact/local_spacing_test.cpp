@@ -70,6 +70,15 @@ TEST(LocalSpacing, OneStrayAndOnePairDoNotCount)
     EXPECT_GT(*std::min_element(spacings.begin(), spacings.end()), 0.7);
 }
 
+TEST(LocalSpacing, StraysFarFromEverythingHaveTheOthersSpacing)
+{
+    Points points = ball(Layout::random, 30, 3.2, 3);
+    for (const glm::dvec3& stray : {glm::dvec3(900, 0, 0), glm::dvec3(0, 0, 400), glm::dvec3(0, -60, 0)})
+        points.push_back(stray);
+    const std::vector<double> spacings = spacingsOf(points);
+    EXPECT_LT(*std::max_element(spacings.begin(), spacings.end()), 2) << "one at 900 had 700, and held every hand";
+}
+
 TEST(LocalSpacing, NeedsASurface)
 {
     EXPECT_THROW((void)spacingsOf(Points(100, glm::dvec3(1, 2, 3))), Error);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <random>
 #include <sstream>
 #include <string>
 
@@ -242,6 +243,28 @@ TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)
         EXPECT_NEAR(p.z, surface - 2e-3, 0.15e-3) << "without draping it would be 4 mm off, at " << p.x;
     }
     EXPECT_LT(hand.fastest(), 2 * flat.fastest());
+}
+
+TEST(GeneratedHand, DrapedOverAThinBodyItKeepsToTheTouchedFace)
+{
+    // Two sheets, 0.5 mm between points: the other face lies within the radius of the mean height.
+    for (const double gap : {0.5e-3, 1e-3, 1.5e-3}) {
+        std::mt19937_64                  random(3);
+        std::uniform_real_distribution<> place(-15e-3, 15e-3);
+        std::vector<glm::dvec3>          points;
+        for (int n = 0; n < 7200; ++n) {
+            const double x = place(random);
+            points.emplace_back(x, place(random), n % 2 == 0 ? 0 : -gap);
+        }
+        const std::vector<double> stiffness(points.size(), 1e6);
+        const SoftObject          object(PointCloud(std::move(points), stiffness, StiffnessKind::modulus));
+        const HandPlace           top{{0, 0, 0}, {0, 0, 1}};
+        HandScript                s = script(HandMotion::scan);
+        s.radius                    = 8e-3;
+        const HandPath hand         = draped(makeHand(s, top), top, object);
+        for (double t = 0.5; t < 3; t += 0.01)
+            ASSERT_NEAR(hand.position(t).z, -2e-3, 1e-6) << "pressed deeper by half the gap of " << gap;
+    }
 }
 
 TEST(GeneratedHand, DrapedBeyondABorderItKeepsTheLastHeight)
