@@ -60,7 +60,7 @@ double quantile(std::vector<double>& values, double share)
 
 /// What is found about single points.
 struct PointFacts {
-    std::vector<std::uint8_t> border, inLine;
+    std::vector<std::uint8_t> border, inLine, stray;
     std::vector<float>        along;  ///< to the nearest point [m]
     std::vector<float>        across; ///< to the next line [m]; 0: none is near, or the point is in no line
 };
@@ -80,6 +80,10 @@ public:
         neighbourhoods_.each(run, radius, [&](std::uint32_t rank, std::span<const NearCandidate> near) {
             const std::uint32_t point = points_[rank];
             lookForLine(rank, near);
+            const auto isOther = [&](const NearCandidate& n) {
+                return n.rank != rank && n.distance2 <= radius(rank) * radius(rank);
+            };
+            facts_.stray[point] = std::ranges::none_of(near, isOther);
             if (glm::dot(survey_.normal(point), survey_.normal(point)) == 0) return; // no surface, so no border either
             angles_.clear();
             for (const NearCandidate& candidate : near)
@@ -244,6 +248,7 @@ void summarise(CloudQuality& quality, const PointFacts& facts)
     std::size_t         border = 0;
     for (std::size_t i = 0; i < facts.border.size(); ++i) {
         border += facts.border[i];
+        quality.strays += facts.stray[i];
         if (facts.inLine[i]) along.push_back(facts.along[i]);
         if (facts.across[i] > 0) across.push_back(facts.across[i]);
     }
@@ -304,7 +309,8 @@ CloudQuality cloudQuality(const SoftObject& object)
     measureNoise(quality, survey, object.size());
     measureDepthSteps(quality, object);
     PointFacts facts{std::vector<std::uint8_t>(object.size()), std::vector<std::uint8_t>(object.size()),
-                     std::vector<float>(object.size()), std::vector<float>(object.size())};
+                     std::vector<std::uint8_t>(object.size()), std::vector<float>(object.size()),
+                     std::vector<float>(object.size())};
     const std::vector<std::uint32_t> points = object.index().pointsByRank();
     inCurveRuns(points.size(), [&] { return Looking(object, points, facts); });
     summarise(quality, facts);

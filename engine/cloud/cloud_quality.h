@@ -17,13 +17,14 @@ struct Spread {
 
 /// How well the points of an object describe its surface. Everything is 0 for an object without one.
 struct CloudQuality {
-    Spread spacing;                ///< see SurfaceSurvey
-    double byPoints = 0;           ///< median of the spacing where each point counts alike [m]
-    double area     = 0;           ///< of the surface, holes apart: the sum of the squared spacings [m^2]; not of lines
-    double noise = 0, noise95 = 0; ///< median, and what 95 % of the points stay below [m]
-    double noisy = 0, noisy95 = 0; ///< the same, of the noise over the spacing of the same point [1]
-    double sided  = 0;             ///< share of the points whose outward side is known [1]
-    double border = 0;             ///< share of the points at a border or beside a hole, see cloudQuality() [1]
+    Spread      spacing;      ///< see SurfaceSurvey
+    double      byPoints = 0; ///< median of the spacing where each point counts alike [m]
+    double      area     = 0; ///< of the surface, holes apart: the sum of the squared spacings [m^2]; not of lines
+    double      noise = 0, noise95 = 0; ///< median, and what 95 % of the points stay below [m]
+    double      noisy = 0, noisy95 = 0; ///< the same, of the noise over the spacing of the same point [1]
+    double      sided  = 0;             ///< share of the points whose outward side is known [1]
+    std::size_t strays = 0; ///< points that have no other within three spacings: nothing of a surface is felt there
+    double      border = 0; ///< share of the points at a border or beside a hole, see cloudQuality() [1]
     /// The longest edge of the box around each border that hangs together, the largest first [m]: the outer ones of an
     /// open sheet, and its holes.
     std::vector<double> borderWidths{};

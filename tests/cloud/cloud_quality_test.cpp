@@ -85,6 +85,19 @@ TEST(CloudQuality, StepsOfDepthAreNamedAndRegularPointsAreNone)
     EXPECT_EQ(cloudQuality(objectOf(std::move(two))).depthStep, 0) << "two values of depth";
 }
 
+TEST(CloudQuality, StraysAreCountedAndChangeNothingElse)
+{
+    std::vector<glm::dvec3> points = lattice(50, 1e-3);
+    const CloudQuality      sheet  = cloudQuality(objectOf(points));
+    points.emplace_back(1, 0, 0);
+    points.emplace_back(0, 0, 0.5);
+    const CloudQuality strays = cloudQuality(objectOf(points));
+    EXPECT_EQ(sheet.strays, 0U);
+    EXPECT_EQ(strays.strays, 2U);
+    EXPECT_NEAR(strays.spacing.most / sheet.spacing.most, 1, 0.1) << "it was the distance of the furthest";
+    EXPECT_NEAR(strays.area / sheet.area, 1, 0.01);
+}
+
 TEST(CloudQuality, GaussianNoiseIsMeasured)
 {
     for (const double sigma : {0.1e-3, 0.5e-3}) {

@@ -172,6 +172,9 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
             "half of the points lie " + metres(q.byPoints) +
             " apart or less, on a small part of the area: the touch is fine there, and elsewhere as coarse as "
             "the points");
+    if (q.strays > 0)
+        said.push_back((q.strays == 1 ? "1 point lies" : std::to_string(q.strays) + " points lie") +
+                       std::string(" far from all others: strays count in the extent, and little is felt there"));
     if (q.border > 0) said.push_back("at borders and holes the sheet goes on with the stiffness of the nearest points");
     if (q.sided < 0.995) said.push_back(onSides(r));
     if (r.rounding > kStep * q.spacing.typical)
@@ -200,6 +203,7 @@ nlohmann::json jsonOf(const QualityReport& r)
             {"sides_known",
              {{"all", q.sided}, {"file", r.sides.file}, {"faces", r.sides.faces}, {"layers", r.sides.layers}}},
             {"border_points", q.border},
+            {"strays", q.strays},
             {"border_widths", q.borderWidths},
             {"points_in_lines", q.inLines},
             {"spacing_between_lines", q.areLines() ? nlohmann::json(q.betweenLines) : nlohmann::json(nullptr)},
