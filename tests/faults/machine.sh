@@ -8,6 +8,8 @@ work=$(mktemp -d)
 chmod 777 "$work"
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
+cp "$jump" "$work/jumping_clock.so" # LD_PRELOAD parts its paths at spaces
+jump=$work/jumping_clock.so
 passed=0 failed=0
 pass() { passed=$((passed + 1)); }
 complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
