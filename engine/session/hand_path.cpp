@@ -376,10 +376,11 @@ HandPath makeHand(const HandScript& script, const HandPlace& place)
 
 HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& object)
 {
-    constexpr double           kReach    = 3; // [1] spacings: some 28 points, so that the height is smooth
-    const double               spacing   = object.spacing();
-    const double               radius    = kReach * spacing;
-    std::vector<HandPose>      waypoints = hand.waypoints();
+    constexpr double      kReach    = 3; // [1] spacings: some 28 points, so that the height is smooth
+    constexpr double      kFlooded  = 2; // [radii]: in a wider ball the points inside hang together wherever it lies
+    const double          spacing   = object.spacing();
+    const double          radius    = kReach * spacing;
+    std::vector<HandPose> waypoints = hand.waypoints();
     std::vector<std::uint32_t> near, own;
     SurfaceFlood               flood(object); // a thin body has another face within the radius
     // Heights are looked for around the last one: where the hand has come from, the surface is known. The search starts
@@ -387,13 +388,15 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& 
     double     height = 0; // [m] above the plane through the place
     const auto follow = [&](const glm::dvec3& inPlane) {
         const glm::dvec3 last = place.point + inPlane + height * place.outward;
-        object.index().gather(last, radius, near);
+        object.index().gather(last, kFlooded * radius, near);
         const auto touched = flood.reachIn(near, last, place.outward);
         own.assign(touched.begin(), touched.end());
         std::ranges::sort(own); // the flood's order depends on where it starts
         double sum = 0, weights = 0;
         for (const std::uint32_t n : own) {
-            const glm::dvec3 d      = object.positions()[near[n]] - place.point;
+            const glm::dvec3 point = object.positions()[near[n]], away = point - last;
+            if (glm::dot(away, away) > radius * radius) continue;
+            const glm::dvec3 d      = point - place.point;
             const double     h      = glm::dot(d, place.outward);
             const glm::dvec3 beside = d - h * place.outward - inPlane;
             const double     share  = 1 - glm::dot(beside, beside) / (radius * radius);
