@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -376,25 +377,30 @@ HandPath makeHand(const HandScript& script, const HandPlace& place)
 
 HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& object)
 {
-    constexpr double      kReach    = 3; // [1] spacings: some 28 points, so that the height is smooth
-    constexpr double      kFlooded  = 2; // [radii]: in a wider ball the points inside hang together wherever it lies
-    const double          spacing   = object.spacing();
-    const double          radius    = kReach * spacing;
-    std::vector<HandPose> waypoints = hand.waypoints();
-    std::vector<std::uint32_t> near, own;
+    constexpr double kReach   = 3;   // [1] spacings: some 28 points, so that the height is smooth
+    constexpr double kFlooded = 2;   // [radii]: in a wider ball the points inside hang together wherever it lies
+    constexpr double kStays   = 0.5; // [radii] that the hand goes before the surface is looked for anew
+
+    const double               spacing   = object.spacing();
+    const double               radius    = kReach * spacing;
+    std::vector<HandPose>      waypoints = hand.waypoints();
     SurfaceFlood               flood(object); // a thin body has another face within the radius
+    std::vector<std::uint32_t> own;           // points of the surface around `flooded`
+    std::optional<glm::dvec3>  flooded;       // [m]
     // Heights are looked for around the last one: where the hand has come from, the surface is known. The search starts
     // at the place and walks to the first waypoint in steps of a spacing.
     double     height = 0; // [m] above the plane through the place
     const auto follow = [&](const glm::dvec3& inPlane) {
         const glm::dvec3 last = place.point + inPlane + height * place.outward;
-        object.index().gather(last, kFlooded * radius, near);
-        const auto touched = flood.reachIn(near, last, place.outward);
-        own.assign(touched.begin(), touched.end());
-        std::ranges::sort(own); // the flood's order depends on where it starts
+        if (!flooded || glm::distance(last, *flooded) > kStays * radius) {
+            const auto found = flood.reach(last, (kFlooded + kStays) * radius, place.outward);
+            own.assign(found.begin(), found.end());
+            std::ranges::sort(own); // the flood's order depends on where it starts
+            flooded = last;
+        }
         double sum = 0, weights = 0;
         for (const std::uint32_t n : own) {
-            const glm::dvec3 point = object.positions()[near[n]], away = point - last;
+            const glm::dvec3 point = object.positions()[n], away = point - last;
             if (glm::dot(away, away) > radius * radius) continue;
             const glm::dvec3 d      = point - place.point;
             const double     h      = glm::dot(d, place.outward);
