@@ -111,12 +111,11 @@ int palpate_touch(const palpate_object* object, const double place[3], const dou
         const palpate_object& of = demand(object, "object");
         PlateSolver           solver(of.scene.solver);
         const Patch           patch  = patchAt(of, place, from, solver);
-        const int             middle = of.scene.patch.cells / 2;
         palpate_touch_result  own{};
         own.felt_stiffness       = patch.feltStiffness;
         own.compliance           = patch.compliance;
         own.contact_stiffness    = patch.contactStiffness;
-        own.rigidity             = patch.plate.rigidity(middle, middle);
+        own.rigidity             = rigidityAtContact(patch);
         own.solver_error         = patch.report.errorEstimate.value_or(kNone);
         own.discretisation_error = discretisationError(patch, of.scene.patch, solver).value_or(kNone);
         own.stiffening           = patch.stiffening;

@@ -67,7 +67,8 @@ CoarseObject::CoarseObject(const SoftObject& dense, double side, Cubes cubes)
           SoftObject(PointCloud(std::move(cubes.positions), meansOf(dense.cloud().stiffness()), dense.cloud().kind()),
                      dense.material(), {}, cubes.normals)
               .withFoundation(meansOf(dense.foundationShape()))
-              .withStiffening(meansOf(dense.stiffening(), false)))
+              .withStiffening(meansOf(dense.stiffening(), false))
+              .withHeld(meansOf(dense.held(), false)))
 {
 }
 
@@ -76,7 +77,8 @@ CoarseObject::CoarseObject(const CoarseObject& shape, const SoftObject& dense)
       object_(shape.object_.repainted(meansOf(dense.cloud().stiffness()))
                   .withMaterial(dense.material())
                   .withFoundation(meansOf(dense.foundationShape()))
-                  .withStiffening(meansOf(dense.stiffening(), false)))
+                  .withStiffening(meansOf(dense.stiffening(), false))
+              .withHeld(meansOf(dense.held(), false)))
 {
 }
 

@@ -99,6 +99,9 @@ struct LoadedCloud {
     /// For each point the foundation below it [Pa/m]; empty if the file has no property for it.
     std::vector<double> foundation{};
 
+    /// For each point whether something holds it, from 0 to 1; empty if the file has no property for it.
+    std::vector<double> held{};
+
     /// For each row of the file its point, or kNoPoint if it was omitted. Empty if every row is a point of its own.
     std::vector<std::uint32_t> pointOfRow{};
 };
@@ -110,7 +113,8 @@ struct LoadedCloud {
 /// PCD: ascii, binary and binary_compressed; fields with COUNT > 1 are skipped, and points with NaN, which is its sign
 /// for "no return", are omitted and counted. Bytes after the last row of a binary PLY or PCD file are a warning. Text: one point per line, `x y z [stiffness]` or named by
 /// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
-/// A property "stiffening" is b [1/m] of each point, from 0 to kMostStiffening; "foundation" is that below it [Pa/m].
+/// A property "stiffening" is b [1/m] of each point, from 0 to kMostStiffening; "foundation" is that below it [Pa/m], and "held"
+/// is 1 where something holds it and 0 where it is free.
 /// Points at exactly the same place become one, in the place of the first, with the mean of the logarithms of their
 /// stiffness; faces then name that one. The place must not be the only one.
 /// \throws Error naming the file, the line or byte, what was expected and what was found

@@ -44,7 +44,8 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
       survey_(std::make_shared<const SurfaceSurvey>(
           *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
       foundationShape_(std::make_shared<const std::vector<double>>()),
-      stiffening_(std::make_shared<const std::vector<double>>()), material_(material)
+      stiffening_(std::make_shared<const std::vector<double>>()), held_(std::make_shared<const std::vector<double>>()),
+      material_(material)
 {
 }
 
@@ -89,6 +90,17 @@ SoftObject SoftObject::withStiffening(std::vector<double> b) const
     SoftObject other  = *this;
     other.stiffening_ = std::make_shared<const std::vector<double>>(std::move(b));
     other.coarse_     = coarseShapes();
+    return other;
+}
+
+SoftObject SoftObject::withHeld(std::vector<double> share) const
+{
+    const auto isGood = [](double value) { return value >= 0 && value <= 1; };
+    PALP_EXPECT((share.empty() || share.size() == size()) && std::ranges::all_of(share, isGood),
+                "a share from 0 to 1 for each point");
+    SoftObject other = *this;
+    other.held_      = std::make_shared<const std::vector<double>>(std::move(share));
+    other.coarse_    = coarseShapes();
     return other;
 }
 

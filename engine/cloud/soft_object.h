@@ -17,7 +17,7 @@ class CoarseObject;
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
 /// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
-/// repainted(), withMaterial(), withFoundation() and withStiffening() share positions, index, survey, faces and mesh: of
+/// repainted(), withMaterial(), withFoundation(), withStiffening() and withHeld() share positions, index, survey, faces and mesh: of
 /// a million points only the stiffness is copied.
 /// It may be moved and copied freely, because the index holds its own copy of the positions.
 /// \thread immutable, so free to share
@@ -47,6 +47,10 @@ public:
     /// \param b  [1/m] of each point, 0 to kMostStiffening, see DepthLaw; empty: the material's everywhere
     [[nodiscard]] SoftObject withStiffening(std::vector<double> b) const;
 
+    /// Returns the same points, some of which something holds where they are.
+    /// \param share  of each point that is held, 0 to 1; empty: none is
+    [[nodiscard]] SoftObject withHeld(std::vector<double> share) const;
+
     [[nodiscard]] const PointCloud&         cloud() const noexcept { return cloud_; }
     [[nodiscard]] const NeighbourIndex&     index() const noexcept { return *index_; }
     [[nodiscard]] const SurfaceSurvey&      survey() const noexcept { return *survey_; }
@@ -67,6 +71,9 @@ public:
 
     /// Returns what withStiffening() took [1/m]; empty: material() says it.
     [[nodiscard]] std::span<const double> stiffening() const noexcept { return *stiffening_; }
+
+    /// Returns what withHeld() took [1]; empty: nothing is held.
+    [[nodiscard]] std::span<const double> held() const noexcept { return *held_; }
 
     /// Returns the flexural rigidity D at a point [N m].
     [[nodiscard]] double rigidity(std::size_t point) const noexcept { return cloud_.rigidity(point, material_); }
@@ -91,6 +98,7 @@ private:
     std::shared_ptr<const SurfaceSurvey>         survey_;          ///< never null
     std::shared_ptr<const std::vector<double>>   foundationShape_; ///< never null
     std::shared_ptr<const std::vector<double>>   stiffening_;      ///< [1/m] never null
+    std::shared_ptr<const std::vector<double>>   held_;            ///< never null
     Material                                     material_;
     std::shared_ptr<CoarseObjects>               coarse_ = std::make_shared<CoarseObjects>(); ///< never null
 };

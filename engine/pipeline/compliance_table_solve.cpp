@@ -68,11 +68,12 @@ struct OverNode {
     double    node = 0, mean = 0; ///< rigidity of that node, geometric mean [N m]
     NodeField over;
 
-    explicit OverNode(const Plate& plate) : node(plate.rigidity.values().front()), over(plate.grid)
+    explicit OverNode(const NodeField& rigidity)
+        : node(rigidity.values().front()), over(rigidity.nodesX(), rigidity.nodesZ())
     {
         double sum = 0;
         for (std::size_t n = 0; n < over.values().size(); ++n)
-            sum += over.values()[n] = std::log(plate.rigidity.values()[n] / node);
+            sum += over.values()[n] = std::log(rigidity.values()[n] / node);
         mean = node * std::exp(sum / double(over.values().size()));
     }
 };
@@ -94,21 +95,26 @@ MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& latti
 
 } // namespace
 
-FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& settings, int side,
-                                  PlateSolver& solver)
+FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& given, int side, PlateSolver& solver)
 {
+    const PatchSettings settings = settledFor(object, given);
+    const bool          whole    = settings.windowOf == WindowOf::object;
     std::vector<double> rigidities(object.size());
     for (std::size_t point = 0; point < object.size(); ++point) rigidities[point] = object.rigidity(point);
     const PlateGrid grid = PatchWindow::square(settings.window, settings.cells).grid;
-    const Plate     homogeneous{grid, settings.edges, object.material().poissonRatio, settings.foundation,
-                            NodeField(grid, geometricMean(rigidities))};
+    const Plate     homogeneous{grid, whole ? PlateEdges{} : settings.edges, object.material().poissonRatio,
+                            settings.foundation, NodeField(grid, geometricMean(rigidities))};
     const double    perRigidity =
         contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);
-    return solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance);
+    FootprintLattice lattice =
+        solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance, whole);
+    // The window is twice as wide as the object, and what a clamped plate gives way by grows with its area.
+    if (whole && settings.foundation == 0) lattice.middles.front() -= std::log(4.0);
+    return lattice;
 }
 
 FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
-                              double tolerance)
+                              double tolerance, bool wholeObject)
 {
     PALP_EXPECT(shape.side >= 1 && shape.side <= ComplianceTable::kMostSide && shape.side % 2 == 1,
                 "a table of " + std::to_string(shape.side) + " entries a side");
@@ -122,7 +128,7 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
                     std::to_string(shape.side) + " x " + std::to_string(shape.side) + " footprints of radius " +
                     formatQuantity(shape.radius, "m") + "; expected at least " + formatQuantity(wanted, "m"));
 
-    FootprintLattice lattice{.shape = shape};
+    FootprintLattice lattice{.shape = shape, .wholeObject = wholeObject};
     const auto       loadAt = [&](double x, double z) {
         return footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, shape.radius);
     };
@@ -135,7 +141,7 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
                                        slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
         }
     // The middle rung comes first: a solver counts rigidities in units of the first, and it must be exactly one.
-    const int reach  = homogeneous.foundation > 0 ? kRungs : 0;
+    const int reach  = homogeneous.foundation > 0 && !wholeObject ? kRungs : 0;
     lattice.rigidity = homogeneous.rigidity(0, 0);
     std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
     std::vector<double>                   middles(rungs.size());
@@ -146,7 +152,9 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
         const TableSolution own     = solveTable(plate, lattice, solver, tolerance);
         const double        middle  = own.table.middle().lnCompliance;
         auto&               entries = rungs[std::size_t(rung + reach)] = own.table.compliance;
-        for (ComplianceTable::Entry& entry : entries) entry.value -= middle;
+        for (ComplianceTable::Entry& entry : entries)
+            entry = wholeObject ? ComplianceTable::Entry{}
+                                : ComplianceTable::Entry{entry.value - middle, entry.slopeX, entry.slopeZ};
         middles[std::size_t(rung + reach)] = middle;
         if (rung == 0) lattice.feltRadius = bendingRadius(plate, own.middle.deflection);
     }
@@ -194,10 +202,12 @@ MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, P
                           ComplianceTable& table)
 {
     FootprintSolution solved = solver.solveFootprints(plate, lattice.loads, lattice.loads.size() / 2, tolerance);
-    const OverNode    over(plate);
+    const OverNode    over(plate.rigidity);
     // The window's correction depends on how far a dent spreads, (D/k)^(1/4): a foundation that is firmer throughout is
     // as good as a softer sheet.
-    const double firmer = plate.foundationShape.values().empty() ? 1 : geometricMean(plate.foundationShape.values());
+    const double firmer = plate.foundationShape.values().empty() || lattice.wholeObject
+                              ? 1
+                              : geometricMean(plate.foundationShape.values());
     return fillTable(std::move(solved), lattice, over, lattice.homogeneous(over.mean / firmer), table);
 }
 
@@ -208,7 +218,7 @@ MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, P
     const std::size_t        middle = lattice.loads.size() / 2;
     FootprintSolution        solved = solver.solveFootprints(shell, lattice.loads, middle, tolerance);
     ComplianceTable::Entries own{};
-    if (lattice.loads.size() > 1) {
+    if (lattice.loads.size() > 1 && !lattice.wholeObject) {
         const auto mean =
             solver.solveFootprints(homogeneousOf(shell), lattice.loads, middle, std::max(tolerance, kLoose));
         const auto at = complianceOf(mean.responses[middle]);
@@ -217,7 +227,14 @@ MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, P
             own[n].value -= at.value;
         }
     }
-    return fillTable(std::move(solved), lattice, OverNode(shell.bending), own, table);
+    return fillTable(std::move(solved), lattice, OverNode(shell.bending.rigidity), own, table);
+}
+
+void fillContact(const NodeField& rigidity, const FootprintLattice& lattice, ComplianceTable& table)
+{
+    const OverNode over(rigidity);
+    for (std::size_t n = 0; n < lattice.loads.size(); ++n)
+        table.contactStiffness[n] = contactOf(lattice, n, over.over, over.node);
 }
 
 void fillStiffening(const NodeField& stiffening, const FootprintLattice& lattice, ComplianceTable& table)

@@ -29,7 +29,8 @@ struct FootprintLattice {
     /// ln c(e)/c(0) of homogeneous windows, with its slopes, by rigidity; one rung without a foundation.
     std::vector<ComplianceTable::Entries> rungs{};
     std::vector<double>                   middles{}; ///< ln c in the middle of those windows
-    double feltRadius = 0; ///< root mean square radius of the bending energy, in the middle rung [m]
+    bool   wholeObject = false; ///< the window spans the object: what its borders do to a footprint stays in
+    double feltRadius  = 0;     ///< root mean square radius of the bending energy, in the middle rung [m]
 
     /// Returns the entries for a plate whose rigidity has this geometric mean [N m]: linear between rungs, the last one
     /// beyond them.
@@ -51,9 +52,10 @@ struct FootprintLattice {
 /// \param homogeneous  the window: grid, edges, foundation, and one rigidity throughout, in the middle of what is to
 ///                     come
 /// \param tolerance    as for the tables themselves: the error that iteration leaves is then taken out too
+/// \param wholeObject  the window spans the object: nothing of a homogeneous window is to be taken out of its tables
 /// \throws Error if a footprint does not lie wholly on the plate
 [[nodiscard]] FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
-                                            double tolerance);
+                                            double tolerance, bool wholeObject = false);
 
 struct TableSolution {
     ComplianceTable table;      ///< without sequence number, time and chart
@@ -86,6 +88,11 @@ struct MiddleSolution {
 /// a shell of the mean rigidity and curvature, which is solved as well.
 [[nodiscard]] MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
                                         double tolerance, ComplianceTable& table);
+
+/// Fills in the stiffness of the contact under each footprint: of the geometric mean of the rigidity, weighted as the
+/// load is.
+/// \param rigidity  of the sheet at the nodes [N m]
+void fillContact(const NodeField& rigidity, const FootprintLattice& lattice, ComplianceTable& table);
 
 /// Fills in how the force stiffens under each footprint: the mean of b, weighted as the load is.
 /// \param stiffening  b at the nodes [1/m]; empty: the table does not say it

@@ -16,6 +16,7 @@
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/touched_surface.h"
+#include "engine/pipeline/detail/whole_object.h"
 #include "engine/plate/load.h"
 
 // The paper's section 2. Each step fills in its part of the patch; deform() below gives their order.
@@ -355,12 +356,22 @@ void refuseIfFew(const Patch& patch, const PatchSettings& settings)
 void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
 {
     constexpr double kMostUncovered = 0.9; // of the nodes: a corner of a sheet leaves three quarters [1]
-    if (patch.contact.felt) return;
+    if (patch.contact.felt || settings.windowOf == WindowOf::object) return;
     if (double(patch.nodesWithoutPoint) > kMostUncovered * double(patch.plate.grid.nodes()))
         throw Error(placeText(patch.contact) + ": the patch window of " + formatQuantity(settings.window, "m") +
                     " is almost empty: " + std::to_string(patch.nodesWithoutPoint) + " of its " +
                     std::to_string(patch.plate.grid.nodes()) + " grid nodes have no point of the cloud nearby" +
                     kWindowHint);
+}
+
+/// Refuses an object that nothing holds: it would move off as a whole.
+void refuseIfLoose(const Patch& patch, const PatchSettings& settings)
+{
+    constexpr std::size_t kFewest = 3; // nodes, not on one line, hold a sheet in space
+    if (settings.windowOf == WindowOf::contact || settings.foundation > 0 || patch.heldNodes >= kFewest) return;
+    throw Error(placeText(patch.contact) + ": the piece of surface that is touched reaches " +
+                std::to_string(patch.heldNodes) + " nodes that are held, expected at least " + std::to_string(kFewest) +
+                "; hold more of it with the key held, or give it a foundation");
 }
 
 /// Returns the largest value below which no more than a share of all squares lies; reorders.
@@ -450,6 +461,8 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     };
     const bool isTissue = !object.foundationShape().empty() && settings.foundation > 0;
     if (isTissue) add(object.foundationShape(), [](double shape) { return shape; });
+    if (!object.held().empty())
+        add(object.held(), [](double share) { return std::exp(share); }); // of which the log-mean
     if (!object.stiffening().empty()) add(object.stiffening(), growthOf);
 
     std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest);
@@ -457,18 +470,35 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     patch.plate = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                    std::move(resampled[0].rigidity)};
     refuseIfEmpty(patch, settings);
-    if (isTissue) patch.plate.foundationShape = std::move(resampled[1].rigidity);
+    auto next = resampled.begin() + 1;
+    if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
+    if (settings.windowOf == WindowOf::object) cutOut(patch, sparsest);
+    if (!object.held().empty()) {
+        NodeField held = std::move((next++)->rigidity);
+        for (double& share : held.values()) share = std::log(share);
+        holdNodes(patch, held, settings.foundation);
+    }
+    refuseIfLoose(patch, settings);
     if (object.stiffening().empty()) return;
-    patch.stiffeningAtNodes = std::move(resampled.back().rigidity);
+    patch.stiffeningAtNodes = std::move(next->rigidity);
     for (double& growth : patch.stiffeningAtNodes.values()) growth = stiffeningOf(growth);
 }
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
 
-/// Returns the load of 1 N on the footprint about the middle node.
-NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings)
+/// Returns the load of 1 N on the footprint about the middle node, where there is a sheet.
+/// \param covered  share of the sheet at the nodes [1]; empty: all
+NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings, const NodeField& covered)
 {
-    return footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
+    NodeField load = footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
+    if (covered.values().empty()) return load;
+    const Footprint whole(load);
+    return onSheet(whole, covered, whole).load(grid);
+}
+
+NodeField unitLoad(const Patch& patch, const PatchSettings& settings)
+{
+    return unitLoad(patch.plate.grid, settings, patch.covered);
 }
 
 void keep(Patch& patch, PlateSolution solution, double compliance)
@@ -483,7 +513,7 @@ void keep(Patch& patch, PlateSolution solution, double compliance)
 void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
     const StageClock  clock(patch.times.solve);
-    const Footprint   finger(unitLoad(patch.plate.grid, settings));
+    const Footprint   finger(unitLoad(patch, settings));
     FootprintSolution solved = patch.curvature
                                    ? solver.solveFootprints(shellOf(patch), {&finger, 1}, 0, settings.tolerance)
                                    : solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance);
@@ -495,9 +525,14 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
                ComplianceTable& table)
 {
     const StageClock clock(patch.times.solve);
-    MiddleSolution   middle = patch.curvature ? solveTable(shellOf(patch), lattice, solver, settings.tolerance, table)
-                                              : solveTable(patch.plate, lattice, solver, settings.tolerance, table);
-    table.chart             = patch.chart;
+    const auto       solved = [&](const FootprintLattice& loads) {
+        return patch.curvature ? solveTable(shellOf(patch), loads, solver, settings.tolerance, table)
+                                     : solveTable(patch.plate, loads, solver, settings.tolerance, table);
+    };
+    const bool     whole  = !patch.covered.values().empty();
+    MiddleSolution middle = solved(whole ? onSheet(lattice, patch) : lattice);
+    if (whole) fillContact(sheetRigidity(patch), lattice, table);
+    table.chart = patch.chart;
     fillStiffening(patch.stiffeningAtNodes, lattice, table);
     keep(patch, std::move(middle.solution), middle.compliance);
 }
@@ -513,13 +548,12 @@ void movePoints(Patch& patch)
 
 void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
-    const int    middle    = settings.cells / 2;
-    const double modulus   = object.material().modulus(patch.plate.rigidity(middle, middle));
+    const double modulus   = object.material().modulus(rigidityAtContact(patch));
     patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
     patch.stiffening       = object.material().stiffening;
     if (!patch.stiffeningAtNodes.values().empty())
-        patch.stiffening = responseOf(Footprint(unitLoad(patch.plate.grid, settings)), patch.stiffeningAtNodes).work;
+        patch.stiffening = responseOf(Footprint(unitLoad(patch, settings)), patch.stiffeningAtNodes).work;
 }
 
 /// Returns the values at the nodes of a grid of twice the spacing; none of none.
@@ -548,7 +582,7 @@ Shell everySecondOf(const Shell& fine)
 /// Returns whether a grid of twice the spacing carries the fingertip.
 bool hasCoarseGrid(const Patch& patch, const PatchSettings& settings)
 {
-    return settings.cells % 4 == 0 && settings.footprintRadius >= 2 * patch.plate.grid.spacingX;
+    return patch.plate.grid.cellsX % 4 == 0 && settings.footprintRadius >= 2 * patch.plate.grid.spacingX;
 }
 
 /// Of the solutions that a law of large deflections consists of [1]: its own model is right to a hundredth.
@@ -559,14 +593,14 @@ LargeLaw coarseLaw(const Patch& patch, const PatchSettings& settings, const Shel
                    PlateSolver& solver)
 {
     const Shell     shell = everySecondOf(fine);
-    const NodeField load  = unitLoad(shell.bending.grid, settings);
+    const NodeField load  = unitLoad(shell.bending.grid, settings, everySecondOf(patch.covered, shell.bending.grid));
     const Footprint finger(load);
     const NodeField linear =
         (patch.curvature ? solver.solveFootprints(shell, {&finger, 1}, 0, kShapesTolerance)
                          : solver.solveFootprints(shell.bending, {&finger, 1}, 0, kShapesTolerance))
             .whole.deflection;
     LargeLaw     law   = largeLaw(shell, load, linear, reach, solver, kShapesTolerance);
-    const double wrong = law.tangent.front() * dot(unitLoad(patch.plate.grid, settings), patch.response);
+    const double wrong = law.tangent.front() * dot(unitLoad(patch, settings), patch.response);
     for (LargeLaw::Values* values : {&law.force, &law.tangent})
         for (double& value : *values) value /= wrong; // it begins as on the fine grid
     return law;
@@ -588,7 +622,7 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
     else if (quick && hasCoarseGrid(patch, settings))
         patch.large = coarseLaw(patch, settings, shell, reach, solver);
     else
-        patch.large = largeLaw(shell, unitLoad(patch.plate.grid, settings), patch.response, reach, solver,
+        patch.large = largeLaw(shell, unitLoad(patch, settings), patch.response, reach, solver,
                                std::max(settings.tolerance, kShapesTolerance));
 }
 
@@ -647,16 +681,18 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
 
 } // namespace
 
-void prepareTouch(const SoftObject& object, const PatchSettings& settings)
+void prepareTouch(const SoftObject& object, const PatchSettings& given)
 {
+    const PatchSettings settings = settledFor(object, given);
     if (settings.neighbourhood != Neighbourhood::ball && object.spacing() < kDense * cellOf(settings))
         static_cast<void>(object.coarse(cellOf(settings)));
 }
 
-Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings, PlateSolver& solver,
+Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& given, PlateSolver& solver,
              const std::optional<Frame>& carried)
 {
-    Patch patch;
+    const PatchSettings settings = settledFor(object, given);
+    Patch               patch;
     patch.coarse           = coarseFor(object, contact, settings);
     const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
     if (!makePlate(patch, used, contact, settings, carried)) return patch;
@@ -684,11 +720,12 @@ PatchWithTable deformWithTable(const SoftObject& object, const Contact& contact,
     return result;
 }
 
-Patch deformWithTable(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+Patch deformWithTable(const SoftObject& object, const Contact& contact, const PatchSettings& given,
                       const FootprintLattice& lattice, PlateSolver& solver, const std::optional<Frame>& carried,
                       ComplianceTable& table)
 {
-    Patch patch;
+    const PatchSettings settings = settledFor(object, given);
+    Patch               patch;
     patch.coarse           = coarseFor(object, contact, settings);
     const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
     if (!makePlate(patch, used, contact, settings, carried)) return patch;
@@ -706,8 +743,9 @@ std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& 
 {
     const Shell shell = everySecondOf(shellOf(patch));
     if (whyUnsolvable(shell.bending)) return {};
-    const Footprint finger(unitLoad(shell.bending.grid, settings));
-    const auto      of = [&](const auto& what) {
+    const PlateGrid& grid = shell.bending.grid;
+    const Footprint  finger(unitLoad(grid, settings, everySecondOf(patch.covered, grid)));
+    const auto       of = [&](const auto& what) {
         return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance).responses.front().work;
     };
     return patch.curvature ? of(shell) : of(shell.bending);
@@ -726,7 +764,7 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
 std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
     if (!patch.curvature) return {};
-    const Footprint finger(unitLoad(patch.plate.grid, settings));
+    const Footprint finger(unitLoad(patch, settings));
     const auto      felt = [&](Edge edge) {
         Shell shell         = shellOf(patch);
         shell.bending.edges = {edge, edge, edge, edge};

@@ -1,14 +1,38 @@
 #include "engine/pipeline/patch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/pipeline/detail/whole_object.h"
 #include "engine/plate/load.h"
 
 namespace palp {
+
+PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)
+{
+    constexpr double kMargin = 1.04, kFinest = 0.25; // diagonals to the side of the window; fingertips to a cell [1]
+    constexpr int    kFewest = 256, kMost = 512, kTogether = 16; // cells; a multiple that a multigrid can coarsen
+    if (settings.windowOf == WindowOf::contact) return settings;
+    PatchSettings settled = settings;
+    const double  wanted  = 2 * (kMargin * object.cloud().bounds().diagonal() + 3 * object.spacing()); // [m]
+    const double  cell =
+        std::min(std::max(settings.window / settings.cells, kFinest * settings.footprintRadius), wanted / kFewest);
+    const auto blocks = std::ceil(wanted / cell / kTogether - 1e-9);
+    settled.cells     = int(std::clamp(blocks * kTogether, double(kTogether), double(kMost)));
+    settled.window    = std::max(wanted, settled.cells * cell);
+    settled.edges     = {Edge::free, Edge::free, Edge::free, Edge::free};
+    return settled;
+}
+
+double rigidityAtContact(const Patch& patch)
+{
+    const PlateGrid& grid = patch.plate.grid;
+    return sheetRigidity(patch)(grid.cellsX / 2, grid.cellsZ / 2);
+}
 
 std::string placeText(const Contact& contact)
 {

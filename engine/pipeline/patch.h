@@ -45,6 +45,17 @@ constexpr auto namesOf(Theory)
     return std::to_array<NamedValue<Theory>>({{plate, "plate"}, {shell, "shell"}});
 }
 
+/// What a patch window spans.
+enum class WindowOf {
+    contact, ///< a square of fixed size about the contact, whose sides hold it: the paper's
+    object ///< the whole object, as far as the chart can carry it: its own borders are free, and what is held holds it
+};
+constexpr auto namesOf(WindowOf)
+{
+    using enum WindowOf;
+    return std::to_array<NamedValue<WindowOf>>({{contact, "contact"}, {object, "object"}});
+}
+
 /// Whether a sheet that is pressed further than some half of its thickness resists in another way.
 enum class Large {
     off, ///< the linear theory, however far: the paper's
@@ -61,10 +72,11 @@ constexpr auto namesOf(Large)
 /// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So
 /// the compliance of a homogeneous object is exactly constant, and everything that the hand feels is in the object.
 struct PatchSettings {
-    double        foundation      = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
-    double        window          = 40e-3; ///< edge of the square of chart that bends [m]
-    int           cells           = 64;    ///< of the grid along that edge, an even number
-    double        footprintRadius = 4e-3;  ///< of the fingertip [m]
+    double        foundation = 0;     ///< k [Pa/m] of what lies below; 0: nothing (the paper)
+    double        window     = 40e-3; ///< edge of the square of chart that bends [m]; of an object see settledFor()
+    WindowOf      windowOf   = WindowOf::contact;
+    int           cells      = 64;        ///< of the grid along that edge, an even number
+    double        footprintRadius = 4e-3; ///< of the fingertip [m]
     Map           map             = Map::lambertAzimuthal;
     Neighbourhood neighbourhood   = Neighbourhood::surface;
     Resampling    resampling      = Resampling::logMean;
@@ -74,6 +86,12 @@ struct PatchSettings {
     ForceLaw      forceLaw  = ForceLaw::series;
     double        tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };
+
+/// Returns the settings with the window and the cells of this object: as they are, unless the window spans the object. Then
+/// it is twice as wide as the object is long, so that it holds all of it about any contact; its cells are as wide as
+/// `window` and `cells` say, but no finer than a fourth of the fingertip; there are 256 to 512; and its sides, in
+/// the void, are free. A second time changes nothing.
+[[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// The milliseconds that each stage of deform() took.
 struct StageTimes {
@@ -105,6 +123,8 @@ struct Patch {
     double      noise       = 0; ///< standard deviation of the points there about the surface [m]
     double      thickness   = 0; ///< of the object at the contact [m]
     std::size_t nodesWithoutPoint = 0; ///< see Resampled
+    NodeField   covered{};     ///< share of the sheet at the nodes, where the window spans the object [1]; empty: all
+    std::size_t heldNodes = 0; ///< nodes that the scene holds
     /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.
     std::optional<LargeLaw> large;
     std::string             linearBecause;        ///< why it is not there although it was asked for
@@ -134,6 +154,9 @@ struct Patch {
     /// Returns the unit vector along which a force presses: into the surface.
     [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -chart.frame.normal; }
 };
+
+/// Returns the sheet's flexural rigidity at the contact [N m].
+[[nodiscard]] double rigidityAtContact(const Patch& patch);
 
 /// Returns "at (0.012, 0, 0.03) m", which opens complaints about a touch there.
 [[nodiscard]] std::string placeText(const Contact& contact);

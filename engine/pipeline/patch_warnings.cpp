@@ -56,6 +56,7 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;
     const auto [most, least] = patch.principal;
+    if (settings.windowOf == WindowOf::object) return;
     const double     lengths = settings.window / patch.shellLength;
     constexpr double kOneWay = 0.1; // the lesser curvature over the larger, below which a dent reaches far [1]
     if (least / most < kOneWay)
@@ -106,7 +107,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     const double load    = pressOf(patch, material, std::abs(force)).load;
     const double deepest = load * largest(patch.response);
     addTooDeep(result, patch, deepest, load);
-    if (patch.nodesWithoutPoint > 0)
+    const bool whole = settings.windowOf == WindowOf::object;
+    if (patch.nodesWithoutPoint > 0 && !whole)
         result.push_back(
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
             " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "
@@ -132,13 +134,14 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         result.push_back("the points lie " + formatQuantity(patch.sphere.fit.misfit, "m") +
                          " (rms) off the fitted sphere, more than 5 % of the patch window: a smaller one follows the "
                          "surface better");
-    if (const double moving = edgeDeflection(patch.response) / largest(patch.response); moving > 0.02)
+    if (const double moving = edgeDeflection(patch.response) / largest(patch.response); moving > 0.02 && !whole)
         result.push_back("the patch window's edge moves by " + std::to_string(std::lround(100 * moving)) +
                          " % of the largest deflection and nothing moves beyond it: the deformed cloud is torn there");
-    if (settings.foundation == 0 && !patch.curvature) // a shell's own stiffness ends its dents; see addCurvature()
+    if (settings.foundation == 0 && !patch.curvature &&
+        !whole) // a shell's own stiffness ends its dents; see addCurvature()
         result.push_back(
             "there is no foundation, so the size of the patch window decides: compliance grows with its area");
-    if (const auto width = windowWanted(patch.plate); width && settings.window < *width)
+    if (const auto width = windowWanted(patch.plate); !whole && width && settings.window < *width)
         result.push_back("the patch window of " + formatQuantity(settings.window, "m") + " is narrower than the " +
                          formatQuantity(*width, "m") +
                          " that this rigidity and foundation ask for: its edges are felt");

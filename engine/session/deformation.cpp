@@ -36,7 +36,7 @@ Deformation::Deformation(const SoftObject& object, const Scene& scene)
       firstLaw_(homogeneousLaw(object, lattice_))
 {
     if (compute::isProcessorWord(scene.solver, compute::kAutoProcessor))
-        (void)solver_.keepFaster(plateTrial(scene.patch.cells, int(lattice_.loads.size()), scene.patch.tolerance));
+        (void)solver_.keepFaster(plateTrial(settledFor(object, scene.patch).cells, int(lattice_.loads.size()), scene.patch.tolerance));
     prepareTouch(object, settings_);
 }
 

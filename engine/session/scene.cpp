@@ -40,6 +40,7 @@ std::optional<JsonObject::Kind> jsonKindOf(SceneKey::Kind kind)
     case SceneKey::Kind::range:
         return JsonObject::Kind::list;
     case SceneKey::Kind::object:
+    case SceneKey::Kind::objects:
         return JsonObject::Kind::object;
     default:
         return {};
@@ -62,6 +63,7 @@ std::string textOf(const JsonObject& file, const SceneKey& key)
     const std::string_view name = key.name;
     const auto             kind = file.kind(name);
     if (kind == JsonObject::Kind::text) return file.text(name);
+    if (kind == JsonObject::Kind::list && key.kind == SceneKey::Kind::objects) return file.json(name);
     if (kind != jsonKindOf(key.kind)) file.refuse(name, key.expected());
     if (kind == JsonObject::Kind::list) {
         std::string list;
@@ -225,6 +227,11 @@ void refuseContradictions(const Scene& scene, const std::map<std::string, std::s
         refuse(whatSays("footprint_radius"),
                "a fingertip within the patch window of " + plainNumber(scene.patch.window) + " m",
                "a radius of " + plainNumber(scene.patch.footprintRadius) + " m");
+    if (scene.patch.windowOf == WindowOf::object && !scene.held.isThere() && scene.patch.foundation == 0)
+        refuse(whatSays("window"), "something that holds the object, the key held or a foundation, beside \"object\"",
+               "neither");
+    if (scene.patch.windowOf == WindowOf::object && scene.patch.neighbourhood == Neighbourhood::ball)
+        refuse(whatSays("window"), "neighbourhood surface beside \"object\"", "ball, whose points have no border");
     if (scene.dynamicFriction > scene.staticFriction)
         refuse(whatSays("dynamic_friction"), "at most static_friction, " + plainNumber(scene.staticFriction),
                plainNumber(scene.dynamicFriction));

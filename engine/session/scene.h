@@ -20,6 +20,7 @@
 #include "engine/pipeline/patch.h"
 #include "engine/pipeline/presets.h"
 #include "engine/session/scene_below.h"
+#include "engine/session/scene_held.h"
 
 namespace palp {
 
@@ -96,6 +97,7 @@ struct Scene {
     std::string   materialName;             ///< of knownMaterials(), the last that was asked for; empty: none
     Material      material{};               ///< of the sheet
     SceneBelow    below{};                  ///< what varies below the sheet
+    SceneHeld     held{};                   ///< what holds the object where it is
     PatchSettings patch;                    ///< foundation, window, map, force law, ...
     std::string   solver = "auto";          ///< of the plate, as PlateSolver takes it
 

@@ -173,6 +173,8 @@ LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
                     "felt [N/m]; palpate fit makes an object of it");
     SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
     if (!statesStiffening(scene)) object = object.withStiffening(std::move(loaded.stiffening));
+    if (scene.held.isThere())
+        object = object.withHeld(heldShares(object.positions(), scene.held, loaded.held, openingOf(scene, "held")));
     return {onTissue(object.standingFor(std::move(loaded.mesh)), scene, loaded.foundation), std::move(loaded.report)};
 }
 

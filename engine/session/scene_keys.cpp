@@ -388,6 +388,31 @@ std::vector<SceneKey> materialKeys()
     return keys;
 }
 
+/// Returns the key of the patch window: a number, or the object's.
+SceneKey windowKey(const Control& control)
+{
+    SceneKey key = numberKey(
+        {.name  = "window",
+         .help  = "edge of the patch window, the square of surface that bends with the finger; or object: all of the "
+                  "object bends, free at its borders and held where the key held says so",
+         .group = kTouch,
+         .unit  = "m",
+         .form  = "object, or a length from 1e-6 to 100 m, such as 70 mm",
+         .dimension = D::length,
+         .bounds    = KeyBounds{1e-6, 100},
+         .schema    = R"({"anyOf": [{"type": "number", "minimum": 1e-6, "maximum": 100}, {"type": "string"}]})",
+         .control   = control},
+        [](auto& s) -> auto& { return s.patch.window; });
+    key.read = [](S& s, const V& v) {
+        s.patch.windowOf = v.text == "object" ? WindowOf::object : WindowOf::contact;
+        if (v.text != "object") s.patch.window = v.number();
+    };
+    key.write = [](const S& s) {
+        return s.patch.windowOf == WindowOf::object ? quotedJson("object") : plainNumber(s.patch.window);
+    };
+    return key;
+}
+
 std::vector<SceneKey> patchKeys()
 {
     static const std::string edgesForm = wordsOf<Edge>() + ", or a list such as x0=free,z1=supported";
@@ -395,16 +420,17 @@ std::vector<SceneKey> patchKeys()
     const Control            cells{Panel::patch, "cells a side", "", 1, 16, 256, true, 0, 2};
     const Control            fingertip{Panel::patch, "fingertip", "mm", 1e-3, 0.5, 20, true, 2};
     return {
-        numberKey(
-            {.name      = "window",
-             .help      = "edge of the patch window, the square of surface that bends with the finger",
-             .group     = kTouch,
-             .unit      = "m",
-             .example   = "70 mm",
-             .dimension = D::length,
-             .bounds    = KeyBounds{1e-6, 100},
-             .control   = window},
-            [](auto& s) -> auto& { return s.patch.window; }),
+        windowKey(window),
+        {.name = "held",
+         .help = "where the object is held and cannot bend: in a box, in a ball, about points, or, with own, where the "
+                 "file's property held is 1",
+         .group        = kTouch,
+         .kind         = Kind::objects,
+         .form         = kHeldForm,
+         .schema       = std::string(heldSchema()),
+         .decidesCloud = true,
+         .read         = [](S& s, const V& v) { s.held = parseHeld(v.text, v.what); },
+         .write        = [](const S& s) { return heldJson(s.held); }},
         countKey(
             {.name    = "cells",
              .help    = "cells of the plate's grid along a side of the patch window",

@@ -51,7 +51,7 @@ struct SceneKey {
         touch,  ///< where it is touched, how it bends, how it is felt
         session ///< the session from tick to tick
     };
-    enum class Kind { text, word, number, count, yesNo, point, range, object };
+    enum class Kind { text, word, number, count, yesNo, point, range, object, objects }; ///< the last: one or a list
     enum class For { anyCloud, file, sample }; ///< the clouds that the key can be about
 
     std::string_view name, help;

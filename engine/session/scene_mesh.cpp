@@ -109,6 +109,10 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
         for (double& b : loaded.stiffening) b = std::clamp(b, 0.0, kMostStiffening); // weights are rounded
     }
     if (!loaded.foundation.empty()) loaded.foundation = logInterpolated(points, loaded.faces, loaded.foundation);
+    if (!loaded.held.empty()) {
+        loaded.held = interpolated(points, loaded.faces, loaded.held);
+        for (double& share : loaded.held) share = std::clamp(share, 0.0, 1.0);
+    }
     report.scatteredPoints = points.size();
     report.scatterDistance = points.distance;
     if (points.distance > plan.wanted)

@@ -28,7 +28,7 @@ constexpr std::size_t kLongestList = 40;
 constexpr std::array<const char*, 3> kCoordinateNames = {"x", "y", "z"};
 
 /// The slots of which a number must be finite.
-constexpr std::array kUsedSlots = {kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlotStiffening, kSlotFoundation};
+constexpr std::array kUsedSlots = {kSlotX, kSlotY, kSlotZ, kSlotStiffness, kSlotStiffening, kSlotFoundation, kSlotHeld};
 
 /// The names of a normal's components: of PLY files, of PCD files, and of CloudCompare's text files.
 constexpr std::array<std::array<std::string_view, 3>, 3> kNormalNames = {
@@ -469,6 +469,7 @@ LoadedCloud CloudRows::finish()
     loaded.normals        = std::move(normals_);
     loaded.stiffening     = std::move(others_[0]);
     loaded.foundation     = std::move(others_[1]);
+    loaded.held           = std::move(others_[2]);
     loaded.pointOfRow     = pointsOfRows();
     return loaded;
 }

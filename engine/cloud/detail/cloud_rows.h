@@ -35,6 +35,7 @@ enum RowSlot : std::size_t {
     kSlotStiffness,
     kSlotStiffening, ///< b [1/m], see DepthLaw
     kSlotFoundation, ///< of the tissue below [Pa/m]
+    kSlotHeld,       ///< whether something holds the point: 0 to 1
     kSlotNormalX,    ///< of a normal of any length; zero or NaN: the point has none
     kSlotNormalY,
     kSlotNormalZ,
@@ -57,13 +58,14 @@ struct OtherProperty {
     double                          least = 0, most = 0;
     const char*                     expected = ""; ///< in words
 };
-inline constexpr std::array<OtherProperty, 2> kOtherProperties = {
+inline constexpr std::array<OtherProperty, 3> kOtherProperties = {
     {{kSlotStiffening, {"stiffening", "scalar_stiffening"}, 0, kMostStiffening, "a stiffening from 0 to 1e5 1/m"},
      {kSlotFoundation,
       {"foundation", "scalar_foundation"},
       kLeastFoundation,
       kMostFoundation,
-      "a foundation from 1 to 1e15 Pa/m"}}};
+      "a foundation from 1 to 1e15 Pa/m"},
+     {kSlotHeld, {"held", "scalar_held"}, 0, 1, "a share from 0, free, to 1, held"}}};
 
 /// Returns the kind of a stiffness of which only the property's name is known.
 [[nodiscard]] StiffnessKind kindByName(std::string_view property) noexcept;

@@ -126,6 +126,8 @@ void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& set
     const auto stayFlat = [&](const char* why) { patch.flatBecause = why; };
     if (settings.neighbourhood == Neighbourhood::ball)
         return stayFlat("the points of a ball are no surface with a curvature; set neighbourhood surface");
+    if (settings.windowOf == WindowOf::object)
+        return stayFlat("the solver of shells does not carry the borders of a whole object; give window a length");
     if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
     patch.curvature = findCurvature(patch, object, settings);
     if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");

@@ -28,6 +28,7 @@ struct OtherFields {
         const auto& [normals, stiffening, foundation] = std::tie(loaded.normals, loaded.stiffening, loaded.foundation);
         if (!foundation.empty()) fields.push_back({"foundation", "Pa/m", foundation});
         if (!stiffening.empty()) fields.push_back({"stiffening", "1/m", stiffening});
+        if (!loaded.held.empty()) fields.push_back({"held", "1", loaded.held});
         for (int k = 0; k < 3 && !normals.empty(); ++k) {
             for (const glm::vec3& normal : normals) values[std::size_t(k)].push_back(double(normal[k]));
             fields.push_back({std::string("n") + "xyz"[k], "", values[std::size_t(k)]});
@@ -35,7 +36,7 @@ struct OtherFields {
     }
 
     std::array<std::vector<double>, 3> values;
-    std::vector<NamedField>            fields; ///< foundation, stiffening, nx, ny, nz, or fewer
+    std::vector<NamedField>            fields; ///< foundation, stiffening, held, nx, ny, nz, or fewer
 };
 
 void convert(const ConvertOptions& options)

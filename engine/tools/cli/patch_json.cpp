@@ -46,11 +46,34 @@ Json chartJson(const Chart& chart)
             {"signed_curvature", chart.curvature}};
 }
 
+bool isCovered(const Patch& patch, std::size_t node)
+{
+    return patch.covered.values().empty() || patch.covered.values()[node] > 0.5;
+}
+
+std::size_t nodesCovered(const Patch& patch)
+{
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < patch.plate.grid.nodes(); ++n) count += isCovered(patch, n);
+    return count;
+}
+
+/// Returns the least and the largest rigidity at the nodes that the object covers [N m].
+std::pair<double, double> rigiditiesOnSheet(const Patch& patch)
+{
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t n = 0; n < patch.plate.grid.nodes(); ++n)
+        if (isCovered(patch, n)) {
+            least = std::min(least, patch.plate.rigidity.values()[n]);
+            most  = std::max(most, patch.plate.rigidity.values()[n]);
+        }
+    return {least, most};
+}
+
 Json windowJson(const Patch& patch)
 {
-    const PlateGrid& grid = patch.window.grid;
-    const auto [least, most] =
-        std::minmax_element(patch.plate.rigidity.values().begin(), patch.plate.rigidity.values().end());
+    const PlateGrid& grid     = patch.window.grid;
+    const auto& [least, most] = rigiditiesOnSheet(patch);
     return {{"size", {grid.sizeX(), grid.sizeZ()}},
             {"cells", {grid.cellsX, grid.cellsZ}},
             {"spacing", grid.spacingX},
@@ -58,8 +81,11 @@ Json windowJson(const Patch& patch)
             {"points_near_side", patch.points.size()},
             {"points_touched", patch.touched},
             {"nodes_without_point", patch.nodesWithoutPoint},
-            {"rigidity_min", *least},
-            {"rigidity_max", *most}};
+            {"rigidity_min", least},
+            {"rigidity_max", most},
+            {"of", patch.covered.values().empty() ? "contact" : "object"},
+            {"nodes_covered", nodesCovered(patch)},
+            {"nodes_held", patch.heldNodes}};
 }
 
 /// What a touch with a shell says of it; null without one.
@@ -70,7 +96,7 @@ Json shellJson(const Patch& patch, const PatchSettings& settings, PlateSolver& s
     return {{"curvatures", {patch.principal.first, patch.principal.second}},
             {"fit_radius", patch.curvature->radius},
             {"length", patch.shellLength},
-            {"window_lengths", settings.window / patch.shellLength},
+            {"window_lengths", patch.window.grid.sizeX() / patch.shellLength},
             {"felt_stiffness_supported", range->supported},
             {"felt_stiffness_clamped", range->clamped}};
 }
@@ -107,7 +133,7 @@ Json settingsJson(const Material& material, const PatchSettings& s)
             {"stiffening", material.stiffening},
             {"relaxation", relaxationText(material.relaxation)},
             {"foundation", s.foundation},
-            {"window", s.window},
+            {"window", s.windowOf == WindowOf::object ? Json("object") : Json(s.window)},
             {"cells", s.cells},
             {"footprint_radius", s.footprintRadius},
             {"map", name(s.map)},
@@ -130,22 +156,22 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
         {"differences_from_paper", differencesFromPaper(settings)},
         {"sphere", sphereJson(patch.sphere)}};
     if (!patch.deformed()) return report;
-    const int   middle              = settings.cells / 2;
-    const Press press               = pressOf(patch, material, force);
+    const PlateGrid& grid           = patch.plate.grid;
+    const Press      press          = pressOf(patch, material, force);
     report["chart"]                 = chartJson(patch.chart);
     report["chart"]["unrolled"]     = patch.unrolled;
     report["noise"]                 = patch.noise;
     report["window"]                = windowJson(patch);
     report["shell"]                 = shellJson(patch, settings, solver);
     report["large"]                 = largeJson(patch, settings, force);
-    report["rigidity_at_contact"]   = patch.plate.rigidity(middle, middle);
+    report["rigidity_at_contact"]   = rigidityAtContact(patch);
     report["compliance"]            = patch.compliance;
     report["contact_stiffness"]     = patch.contactStiffness;
     report["felt_stiffness"]        = patch.feltStiffness;
     report["stiffening"]            = patch.stiffening;
     report["depth"]                 = press.depth;
     report["depth_relaxed"]         = press.later;
-    report["deflection_at_contact"] = press.load * patch.response(middle, middle);
+    report["deflection_at_contact"] = press.load * patch.response(grid.cellsX / 2, grid.cellsZ / 2);
     report["max_deflection"] =
         press.load * *std::max_element(patch.response.values().begin(), patch.response.values().end());
     report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, solver))},

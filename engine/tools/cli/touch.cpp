@@ -53,6 +53,20 @@ void printLarge(const nlohmann::json& large)
         formatQuantity(large["depth_linear"], "m").c_str(), formatQuantity(large["trusted_deflection"], "m").c_str());
 }
 
+void printWindow(const nlohmann::json& window)
+{
+    const bool whole = window["of"] == "object";
+    std::printf("  patch window       %s%s, %d x %d cells, %zu points, ", whole ? "the whole object, " : "",
+                formatQuantity(window["size"][0], "m").c_str(), window["cells"][0].get<int>(),
+                window["cells"][1].get<int>(), window["points_near_side"].get<std::size_t>());
+    if (whole)
+        std::printf("%zu nodes covered", window["nodes_covered"].get<std::size_t>());
+    else
+        std::printf("%zu nodes without a point nearby", window["nodes_without_point"].get<std::size_t>());
+    if (const auto held = window["nodes_held"].get<std::size_t>()) std::printf(", %zu held", held);
+    std::printf("\n");
+}
+
 void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)
 {
     const PatchSettings& settings = scene.patch;
@@ -74,9 +88,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  sphere             %s, radius %s, misfit %s\n", r["sphere"]["outcome"].get<std::string>().c_str(),
                 r["sphere"]["radius"].is_null() ? "infinite" : formatQuantity(r["sphere"]["radius"], "m").c_str(),
                 formatQuantity(r["sphere"]["misfit"], "m").c_str());
-    std::printf("  patch window       %s, %d x %d cells, %zu points, %zu nodes without a point nearby\n",
-                formatQuantity(settings.window, "m").c_str(), settings.cells, settings.cells,
-                window["points_near_side"].get<std::size_t>(), window["nodes_without_point"].get<std::size_t>());
+    printWindow(window);
     std::printf("  rigidity           %s at the contact, %s to %s in the patch window\n",
                 quantity("rigidity_at_contact", "N m").c_str(), formatQuantity(window["rigidity_min"], "N m").c_str(),
                 formatQuantity(window["rigidity_max"], "N m").c_str());

@@ -24,17 +24,30 @@ struct Near {
 
 constexpr double kFar = 4; ///< spacings beyond which there is no surface [1]
 
+/// Returns whether a place is within a distance of the sides of the window, or, where the window spans the object, of its
+/// border.
+bool isNearEdge(const Patch& patch, const ChartPoint& p, double far)
+{
+    const PlateGrid& grid = patch.window.grid;
+    const double     x = p.x - patch.window.corner.x, z = p.z - patch.window.corner.z;
+    if (patch.covered.values().empty()) {
+        const double beyondX = std::min(x, grid.sizeX() - x), beyondZ = std::min(z, grid.sizeZ() - z);
+        return !(std::min(beyondX, beyondZ) < -far || std::min(std::abs(beyondX), std::abs(beyondZ)) > far);
+    }
+    const auto covered = [&](double u, double v) {
+        return interpolate(grid, patch.covered, std::clamp(u, 0.0, grid.sizeX()), std::clamp(v, 0.0, grid.sizeZ()));
+    };
+    return std::min({covered(x - far, z), covered(x + far, z), covered(x, z - far), covered(x, z + far)}) < 1;
+}
+
 std::vector<Near> alongEdge(const Patch& patch, std::span<const glm::dvec3> positions)
 {
-    const double      far = kFar * patch.spacing, width = patch.window.grid.sizeX(), height = patch.window.grid.sizeZ();
+    const double      far = kFar * patch.spacing;
     std::vector<Near> near;
     const glm::dvec3& normal = patch.chart.frame.normal;
-    const ChartPoint& corner = patch.window.corner;
     for (std::size_t n = 0; n < patch.positions.size(); ++n) {
         const ChartPoint& p = patch.positions[n];
-        const double      x = std::min(p.x - corner.x, corner.x + width - p.x);
-        const double      z = std::min(p.z - corner.z, corner.z + height - p.z);
-        if (std::min(x, z) < -far || std::min(std::abs(x), std::abs(z)) > far) continue;
+        if (!isNearEdge(patch, p, far)) continue;
         if (const auto on = patch.chart.lift(p)) {
             const glm::dvec3 residual = positions[patch.points[n]] - *on;
             near.push_back({p, residual, glm::dot(residual, normal)});
@@ -71,9 +84,42 @@ std::optional<glm::dvec3> residualAt(const std::vector<Near>& points, const Char
     return sum / count;
 }
 
+/// The border of an object that the window spans: in each cell where the covered share passes a half, the line between two
+/// of its sides.
+std::vector<PatchSurface::EdgePlace> borderOf(const Patch& patch, std::span<const glm::dvec3> positions)
+{
+    const PlateGrid&                     grid   = patch.window.grid;
+    const auto                           points = alongEdge(patch, positions);
+    std::vector<PatchSurface::EdgePlace> places;
+    const auto                           add = [&](const ChartPoint& inGrid, bool starts) {
+        const ChartPoint at{patch.window.corner.x + inGrid.x, patch.window.corner.z + inGrid.z};
+        const auto       on = patch.chart.lift(at), off = residualAt(points, at, patch.spacing);
+        if (!on || !off) return false;
+        places.push_back({*on + *off, interpolate(grid, patch.response, inGrid.x, inGrid.z), starts});
+        return true;
+    };
+    for (int i = 0; i < grid.cellsX; ++i)
+        for (int j = 0; j < grid.cellsZ; ++j) {
+            constexpr std::array<std::array<int, 2>, 5> kCorners{{{0, 0}, {1, 0}, {1, 1}, {0, 1}, {0, 0}}};
+            std::vector<ChartPoint>                     crossings;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const auto [a, b] = kCorners[k];
+                const auto [c, d] = kCorners[k + 1];
+                const double from = patch.covered(i + a, j + b) - 0.5, to = patch.covered(i + c, j + d) - 0.5;
+                if ((from < 0) == (to < 0)) continue;
+                const double t = from / (from - to);
+                crossings.push_back({(i + a + t * (c - a)) * grid.spacingX, (j + b + t * (d - b)) * grid.spacingZ});
+            }
+            for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
+                if (add(crossings[k], true) && !add(crossings[k + 1], false)) places.pop_back();
+        }
+    return places;
+}
+
 /// Once around the window's edge; parts where there is no surface are left out.
 std::vector<PatchSurface::EdgePlace> edgeOf(const Patch& patch, std::span<const glm::dvec3> positions)
 {
+    if (!patch.covered.values().empty()) return borderOf(patch, positions);
     constexpr int                        kSteps = 48; // on a side
     const PlateGrid&                     grid   = patch.window.grid;
     const double                         width = grid.sizeX(), height = grid.sizeZ();

@@ -1,0 +1,99 @@
+#include "engine/pipeline/detail/whole_object.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/chart/coverage.h"
+#include "engine/core/extremes.h"
+
+namespace palp {
+namespace {
+
+/// Rigidity beyond the border over that of the sheet [1]. A cantilever of 60 mm is then softer than one with a free edge by
+/// less than the grid's own error (0.02 % with 1e-5 in its place), and solvers take a step or two more.
+constexpr double kVoid = 1e-4;
+
+double shareOf(double covered)
+{
+    return kVoid + (1 - kVoid) * covered;
+}
+
+bool isOnSheet(const Patch& patch, std::size_t node)
+{
+    return patch.covered.values().empty() || patch.covered.values()[node] > 0.5;
+}
+
+} // namespace
+
+void cutOut(Patch& patch, double spacing)
+{
+    const auto touched = std::span(patch.positions).first(patch.touched);
+    patch.covered      = coveredShare(patch.window, touched, spacing);
+    for (std::size_t n = 0; n < patch.covered.values().size(); ++n)
+        patch.plate.rigidity.values()[n] *= shareOf(patch.covered.values()[n]);
+}
+
+void holdNodes(Patch& patch, const NodeField& held, double foundation)
+{
+    constexpr double kFirm = 100, kSharp = 2; // D / cell^4; held nodes lose their hold over half the points' blur [1]
+    Plate&           plate  = patch.plate;
+    const NodeField  sheet  = sheetRigidity(patch);
+    const double     cell   = std::max(plate.grid.spacingX, plate.grid.spacingZ);
+    const double     most   = extremesOf(sheet.values()).most;  // [N m]
+    const double     firm   = kFirm * most / std::pow(cell, 4); // [Pa/m]
+    const bool       varies = !plate.foundationShape.values().empty();
+    NodeField        shape(plate.grid);
+    for (std::size_t n = 0; n < shape.values().size(); ++n) {
+        const double below = foundation * (varies ? plate.foundationShape.values()[n] : 1);
+        const double hold  = std::clamp(0.5 + kSharp * (held.values()[n] - 0.5), 0.0, 1.0);
+        shape.values()[n]  = below / firm + hold * plate.rigidity.values()[n] / most;
+        patch.heldNodes += hold > 0.5 && isOnSheet(patch, n);
+    }
+    plate.foundation      = firm;
+    plate.foundationShape = std::move(shape);
+}
+
+NodeField sheetRigidity(const Patch& patch)
+{
+    NodeField sheet = patch.plate.rigidity;
+    for (std::size_t n = 0; n < patch.covered.values().size(); ++n)
+        sheet.values()[n] /= shareOf(patch.covered.values()[n]);
+    return sheet;
+}
+
+Footprint onSheet(const Footprint& footprint, const NodeField& covered, const Footprint& instead)
+{
+    constexpr double kHardly = 0.05; // of the force [1]
+    double           whole = 0, sum = 0, changeX = 0, changeZ = 0;
+    for (const Footprint::Part& part : footprint.parts) {
+        const double share = covered.values()[part.node];
+        whole += part.force;
+        sum += share * part.force;
+        changeX += share * part.changeX;
+        changeZ += share * part.changeZ;
+    }
+    Footprint own = footprint;
+    if (!(sum > kHardly * whole)) {
+        own = instead;
+        for (Footprint::Part& part : own.parts) part.changeX = part.changeZ = 0;
+        return own;
+    }
+    const double more = whole / sum;
+    for (Footprint::Part& part : own.parts) { // what moves beyond the border presses more on the rest
+        const double share = covered.values()[part.node], force = more * share * part.force;
+        part = {part.node, force, more * share * part.changeX - force * changeX / sum,
+                more * share * part.changeZ - force * changeZ / sum};
+    }
+    return own;
+}
+
+FootprintLattice onSheet(const FootprintLattice& lattice, const Patch& patch)
+{
+    FootprintLattice own    = lattice;
+    const Footprint& middle = lattice.loads[lattice.loads.size() / 2];
+    const Footprint  touch  = onSheet(middle, patch.covered, middle);
+    for (Footprint& load : own.loads) load = onSheet(load, patch.covered, touch);
+    return own;
+}
+
+} // namespace palp

@@ -1,0 +1,199 @@
+#include <cmath>
+#include <functional>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "engine/core/contract.h"
+#include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
+#include "engine/plate/load.h"
+#include "tests/support/temporary_folder.h"
+
+// Windows that span the object: its borders are free, and what is held holds it.
+
+namespace palp {
+namespace {
+
+constexpr Material kSheet{.thickness = 1.5e-3, .poissonRatio = 0.45};
+constexpr double   kModulus = 300e3, kSpacing = 1e-3; // [Pa], [m]
+
+using Where = std::function<bool(double, double)>;
+
+/// A flat sheet of random points.
+SoftObject sheetOf(const Where& inside, const Where& held, unsigned seed, double spacing = kSpacing)
+{
+    std::mt19937_64                        bits(seed);
+    std::uniform_real_distribution<double> along(-70e-3, 70e-3);
+    std::vector<glm::dvec3>                points;
+    std::vector<double>                    shares;
+    const auto                             count = std::size_t(std::pow(140e-3 / spacing, 2));
+    for (std::size_t n = 0; n < count; ++n) {
+        const double x = along(bits), y = along(bits);
+        if (!inside(x, y)) continue;
+        points.emplace_back(x, y, 0);
+        shares.push_back(held(x, y));
+    }
+    std::vector<double> moduli(points.size(), kModulus);
+    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus), kSheet)
+        .withHeld(std::move(shares));
+}
+
+bool isInDrum(double x, double y)
+{
+    return std::abs(x) < 65e-3 && std::abs(y) < 65e-3;
+}
+bool isDrumsFrame(double x, double y)
+{
+    return std::abs(x) > 60e-3 || std::abs(y) > 60e-3;
+}
+bool isInStrip(double x, double y)
+{
+    return x > -20e-3 && x < 60e-3 && std::abs(y) < 30e-3;
+}
+bool isStripsRoot(double x, double)
+{
+    return x < 0;
+}
+
+const PatchSettings kWhole{.windowOf = WindowOf::object};
+
+Patch touched(const SoftObject& object, double x, double y, const PatchSettings& settings = kWhole)
+{
+    PlateSolver host("host");
+    return deform(object, {{x, y, 0}, {0, 0, 1}}, settings, host);
+}
+
+/// c of a plate whose grid ends where the object does, by the reference solver.
+double complianceOf(const PlateGrid& grid, const PlateEdges& edges, double x, double z)
+{
+    const Plate     plate{grid, edges, kSheet.poissonRatio, 0, NodeField(grid, kSheet.rigidity(kModulus))};
+    const Footprint finger(footprintLoad(grid, 1, x, z, kWhole.footprintRadius));
+    PlateSolver     reference("reference");
+    return reference.solveFootprints(plate, {&finger, 1}, 0, 1e-6).responses.front().work;
+}
+
+TEST(WholeObject, ASheetHeldFarAwayIsFeltAsSoftAsItIs)
+{
+    const double truth = complianceOf({160, 160, 120e-3 / 160, 120e-3 / 160}, {}, 60e-3, 60e-3);
+    EXPECT_NEAR(truth * kSheet.rigidity(kModulus) / (0.0056 * 120e-3 * 120e-3), 1, 0.02)
+        << "Timoshenko, clamped square under a point load; a fingertip of 4 mm makes it 1.1 % stiffer";
+    const SoftObject drum = sheetOf(isInDrum, isDrumsFrame, 1);
+    const double     felt = touched(drum, 0, 0).compliance;
+    EXPECT_NEAR(felt / truth, 1, 0.02) << "what is held is found to half a cell, 0.8 % of the width";
+    EXPECT_GT(felt / touched(drum, 0, 0, {}).compliance, 9) << "through a clamped window of 40 mm";
+}
+
+TEST(WholeObject, AStripBendsAboutItsRootHoweverItsPointsAreDrawn)
+{
+    const Edge   c = Edge::clamped, f = Edge::free;
+    const double truth = complianceOf({120, 120, 0.5e-3, 0.5e-3}, {c, f, f, f}, 45e-3, 30e-3);
+    double       least = 1e9, most = 0;
+    for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+        const Patch  patch = touched(sheetOf(isInStrip, isStripsRoot, seed), 45e-3, 0);
+        const double felt  = patch.compliance;
+        EXPECT_TRUE(patch.report.converged);
+        EXPECT_EQ(patch.report.solver, "host") << "nobody had to take over";
+        EXPECT_NEAR(felt / truth, 1, 0.03) << seed << ": its length is found to a fourth of a cell, 0.5 %, thrice";
+        least = std::min(least, felt);
+        most  = std::max(most, felt);
+    }
+    EXPECT_LT(most / least, 1.02);
+}
+
+TEST(WholeObject, AnglesOfTheObjectInItsWindowMakeNoDifference)
+{
+    const auto turned = [](const Where& of, double angle) -> Where {
+        return [=](double x, double y) {
+            return of(x * std::cos(angle) + y * std::sin(angle), y * std::cos(angle) - x * std::sin(angle));
+        };
+    };
+    const double straight = touched(sheetOf(isInStrip, isStripsRoot, 1), 45e-3, 0).compliance;
+    for (const double angle : {0.3, 0.7}) {
+        const SoftObject strip = sheetOf(turned(isInStrip, angle), turned(isStripsRoot, angle), 2);
+        const double     felt  = touched(strip, 45e-3 * std::cos(angle), 45e-3 * std::sin(angle)).compliance;
+        EXPECT_NEAR(felt / straight, 1, 0.03) << angle << ": borders across the grid";
+    }
+}
+
+TEST(WholeObject, ATableIsWhatItsPlacesFeel)
+{
+    const SoftObject       strip = sheetOf(isInStrip, isStripsRoot, 1);
+    PlateSolver            host("host");
+    const FootprintLattice lattice = footprintLattice(strip, kWhole, 3, host);
+    const auto             made    = deformWithTable(strip, {{30e-3, 0, 0}, {0, 0, 1}}, kWhole, lattice, host);
+    ASSERT_TRUE(made.table);
+    for (int n = 0; n < 9; ++n) {
+        const double     x = (n / 3 - 1) * 4e-3, z = (n % 3 - 1) * 4e-3;
+        const auto&      frame = made.patch.chart.frame;
+        const glm::dvec3 place = made.patch.chart.origin + x * frame.east + z * frame.north;
+        const double     alone = touched(strip, place.x, place.y).compliance;
+        EXPECT_NEAR(std::exp(made.table->compliance[std::size_t(n)].value) / alone, 1, 0.01) << n;
+        EXPECT_NEAR(std::exp(made.table->contactStiffness[std::size_t(n)].value) / made.patch.contactStiffness, 1,
+                    1e-6);
+    }
+}
+
+TEST(WholeObject, AFingerOverTheBorderPressesTheSheetAlone)
+{
+    const SoftObject strip = sheetOf(isInStrip, isStripsRoot, 1);
+    const Patch      tip = touched(strip, 60e-3, 0), inner = touched(strip, 55e-3, 0);
+    EXPECT_GT(tip.compliance, inner.compliance);
+    EXPECT_LT(tip.compliance, 1.5 * inner.compliance) << "(60 / 55)^3 = 1.3; the void beside it would give without end";
+    EXPECT_NEAR(tip.contactStiffness / inner.contactStiffness, 1, 1e-9) << "the contact is with the sheet";
+}
+
+TEST(WholeObject, WhatNothingHoldsIsRefused)
+{
+    const SoftObject loose = sheetOf(
+                                 isInStrip, [](double x, double) { return x < -19.9e-3; }, 1)
+                                 .withHeld({});
+    try {
+        touched(loose, 45e-3, 0);
+        FAIL() << "it would move off";
+    } catch (const Error& error) {
+        EXPECT_TRUE(holds(error.what(), {"held", "expected at least 3", "foundation"}));
+    }
+    PatchSettings bedded = kWhole;
+    bedded.foundation    = 1e6;
+    EXPECT_GT(touched(loose, 45e-3, 0, bedded).compliance, 0) << "a foundation holds it";
+}
+
+TEST(WholeObject, AFoundationIsFeltAsInAnyWindow)
+{
+    PatchSettings fixed{.foundation = 1e6}, whole = kWhole;
+    whole.foundation      = 1e6;
+    const SoftObject drum = sheetOf(
+                                isInDrum, [](double, double) { return false; }, 3)
+                                .withHeld({});
+    EXPECT_NEAR(touched(drum, 0, 0, whole).compliance / touched(drum, 0, 0, fixed).compliance, 1, 0.02)
+        << "a dent of 3 mm, cells of 0.7 and of 1 mm";
+}
+
+TEST(WholeObject, ShellsSayThatTheyBendFlat)
+{
+    PatchSettings shell = kWhole;
+    shell.theory        = Theory::shell;
+    const Patch patch   = touched(sheetOf(isInStrip, isStripsRoot, 1), 45e-3, 0, shell);
+    EXPECT_TRUE(holds(patch.flatBecause, {"whole object"}));
+    EXPECT_FALSE(warnings(patch, shell, 1e-3).empty());
+}
+
+TEST(WholeObject, SettingsSettleOnce)
+{
+    const SoftObject strip = sheetOf(isInStrip, isStripsRoot, 1);
+    for (const int cells : {16, 64, 300, 1024}) {
+        PatchSettings settings   = kWhole;
+        settings.cells           = cells;
+        const PatchSettings once = settledFor(strip, settings), twice = settledFor(strip, once);
+        EXPECT_EQ(once.cells, twice.cells) << cells;
+        EXPECT_EQ(once.window, twice.window) << cells;
+        EXPECT_GE(once.window, 2 * strip.cloud().bounds().diagonal());
+        EXPECT_TRUE(once.cells >= 256 && once.cells <= 512 && once.cells % 16 == 0) << once.cells;
+    }
+    EXPECT_EQ(settledFor(strip, {}).window, PatchSettings{}.window);
+}
+
+} // namespace
+} // namespace palp
