@@ -28,6 +28,26 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
     return settled;
 }
 
+double bentSize(const SoftObject& object, const PatchSettings& settings)
+{
+    const PatchSettings now = settledFor(object, settings);
+    return now.windowOf == WindowOf::object ? now.window / 2 : now.window;
+}
+
+double bentSize(const Patch& patch)
+{
+    const double side = patch.window.grid.sizeX();
+    return patch.covered.values().empty() ? side : side / 2;
+}
+
+double mostResponse(const Patch& patch)
+{
+    double most = 0;
+    for (std::size_t n = 0; n < patch.response.values().size(); ++n)
+        if (isOnSheet(patch, n)) most = std::max(most, patch.response.values()[n]);
+    return most;
+}
+
 double rigidityAtContact(const Patch& patch)
 {
     const PlateGrid& grid = patch.plate.grid;

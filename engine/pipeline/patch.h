@@ -93,6 +93,9 @@ struct PatchSettings {
 /// the void, are free. A second time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
+/// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.
+[[nodiscard]] double bentSize(const SoftObject& object, const PatchSettings& settings);
+
 /// The milliseconds that each stage of deform() took.
 struct StageTimes {
     double gather = 0, fit = 0, project = 0, resample = 0, prepare = 0, solve = 0, lift = 0;
@@ -157,6 +160,12 @@ struct Patch {
 
 /// Returns the sheet's flexural rigidity at the contact [N m].
 [[nodiscard]] double rigidityAtContact(const Patch& patch);
+
+/// Returns the largest deflection per force of the object [m/N]; nodes beyond its border do not count.
+[[nodiscard]] double mostResponse(const Patch& patch);
+
+/// Returns how wide that is which bends [m], see bentSize() above.
+[[nodiscard]] double bentSize(const Patch& patch);
 
 /// Returns "at (0.012, 0, 0.03) m", which opens complaints about a touch there.
 [[nodiscard]] std::string placeText(const Contact& contact);

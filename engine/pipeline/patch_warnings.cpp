@@ -105,7 +105,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
                          formatNumber(patch.report.errorEstimate.value_or(1)) +
                          " or more, relative; try fewer cells or less contrast");
     const double load    = pressOf(patch, material, std::abs(force)).load;
-    const double deepest = load * largest(patch.response);
+    const double deepest = load * mostResponse(patch);
     addTooDeep(result, patch, deepest, load);
     const bool whole = settings.windowOf == WindowOf::object;
     if (patch.nodesWithoutPoint > 0 && !whole)

@@ -36,7 +36,8 @@ Deformation::Deformation(const SoftObject& object, const Scene& scene)
       firstLaw_(homogeneousLaw(object, lattice_))
 {
     if (compute::isProcessorWord(scene.solver, compute::kAutoProcessor))
-        (void)solver_.keepFaster(plateTrial(settledFor(object, scene.patch).cells, int(lattice_.loads.size()), scene.patch.tolerance));
+        (void)solver_.keepFaster(
+            plateTrial(settledFor(object, scene.patch).cells, int(lattice_.loads.size()), scene.patch.tolerance));
     prepareTouch(object, settings_);
 }
 
@@ -95,10 +96,9 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         frame_                = patch.chart.frame;
         update.table.sequence = touch.sequence;
         update.table.time     = touch.time;
-        const auto& w         = patch.response.values();
-        const int   middle    = settings_.cells / 2;
+        const int middle      = settings_.cells / 2;
         update.rigidity       = patch.plate.rigidity(middle, middle);
-        update.mostResponse   = *std::max_element(w.begin(), w.end());
+        update.mostResponse   = mostResponse(patch);
         update.errorEstimate  = patch.report.errorEstimate.value_or(0);
         update.iterations     = patch.report.iterations.value_or(0);
         update.shape          = depthShapeOf(patch);

@@ -1,7 +1,5 @@
 #include "engine/session/drawn_load.h"
 
-#include <algorithm>
-
 #include <glm/geometric.hpp>
 
 namespace palp {
@@ -10,7 +8,7 @@ double drawnLoad(const TickRecord& record, const Patch* patch, const Material& m
 {
     const double force = glm::length(record.force);
     if (!patch || !patch->deformed() || (material.isLinear() && patch->stiffening == 0 && !patch->large)) return force;
-    const double most = *std::ranges::max_element(patch->response.values());
+    const double most = mostResponse(*patch);
     return most > 0 ? record.maxDeflection / most : force;
 }
 

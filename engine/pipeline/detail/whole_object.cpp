@@ -18,12 +18,12 @@ double shareOf(double covered)
     return kVoid + (1 - kVoid) * covered;
 }
 
+} // namespace
+
 bool isOnSheet(const Patch& patch, std::size_t node)
 {
     return patch.covered.values().empty() || patch.covered.values()[node] > 0.5;
 }
-
-} // namespace
 
 void cutOut(Patch& patch, double spacing)
 {

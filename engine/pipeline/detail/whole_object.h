@@ -4,6 +4,9 @@
 
 namespace palp {
 
+/// Returns whether a node lies on the sheet, not beyond a border of an object that the window spans.
+[[nodiscard]] bool isOnSheet(const Patch& patch, std::size_t node);
+
 /// Leaves of a patch's plate what the object covers: beyond its border the rigidity is next to nothing, so that the border
 /// is free. Fills in patch.covered.
 /// \param spacing  of the points where they are farthest apart [m]

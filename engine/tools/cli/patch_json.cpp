@@ -172,18 +172,17 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     report["depth"]                 = press.depth;
     report["depth_relaxed"]         = press.later;
     report["deflection_at_contact"] = press.load * patch.response(grid.cellsX / 2, grid.cellsZ / 2);
-    report["max_deflection"] =
-        press.load * *std::max_element(patch.response.values().begin(), patch.response.values().end());
-    report["error"]        = {{"discretisation", orNull(discretisationError(patch, settings, solver))},
-                              {"solver", orNull(patch.report.errorEstimate)}};
-    report["solver"]       = {{"name", patch.report.solver},
-                              {"note", solver.note().empty() ? Json(nullptr) : Json(solver.note())},
-                              {"converged", patch.report.converged},
-                              {"iterations", orNull(patch.report.iterations)},
-                              {"work_units", orNull(patch.report.workUnits)},
-                              {"tolerance", settings.tolerance}};
-    report["milliseconds"] = timesJson(patch.times);
-    report["warnings"]     = warnings(patch, settings, force, material);
+    report["max_deflection"]        = press.load * mostResponse(patch);
+    report["error"]                 = {{"discretisation", orNull(discretisationError(patch, settings, solver))},
+                                       {"solver", orNull(patch.report.errorEstimate)}};
+    report["solver"]                = {{"name", patch.report.solver},
+                                       {"note", solver.note().empty() ? Json(nullptr) : Json(solver.note())},
+                                       {"converged", patch.report.converged},
+                                       {"iterations", orNull(patch.report.iterations)},
+                                       {"work_units", orNull(patch.report.workUnits)},
+                                       {"tolerance", settings.tolerance}};
+    report["milliseconds"]          = timesJson(patch.times);
+    report["warnings"]              = warnings(patch, settings, force, material);
     return report;
 }
 

@@ -111,7 +111,7 @@ Camera cameraFor(const RenderOptions& o, const Stage& stage, const Patch& patch)
 
 double deepestOf(const Patch& patch, double load)
 {
-    return load * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    return load * mostResponse(patch);
 }
 
 std::string noteOf(const Stage& stage, const Patch& patch, double force, double load)

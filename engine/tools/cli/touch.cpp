@@ -131,12 +131,12 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
 std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
                                        const PatchSettings& settings, double force, double load)
 {
-    FigureRenderer    renderer;
-    const std::string newtons = formatQuantity(force, "N");
-    const double deepest = load * *std::max_element(patch.response.values().begin(), patch.response.values().end());
+    FigureRenderer     renderer;
+    const std::string  newtons   = formatQuantity(force, "N");
+    const double       deepest   = load * mostResponse(patch);
     const PressedPatch pressed[] = {{&patch, load, newtons}};
     const double       far       = roundExaggeration(deepest, cloud.bounds().diagonal());
-    const double       near      = roundExaggeration(deepest, 2 * settings.window);
+    const double       near      = roundExaggeration(deepest, 2 * bentSize(patch));
     const auto         times     = [](double factor) {
         return factor == 1 ? std::string() : ", displacement x " + std::to_string(int(factor));
     };

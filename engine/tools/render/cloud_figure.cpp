@@ -207,7 +207,7 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
     figure.title       = view.title;
     figure.up          = given ? glm::dvec3(0, 0, 1) : first.chart.frame.normal;
     figure.direction   = given ? view.direction : obliquely(first.chart.frame);
-    if (view.closeUp) figure.window = FigureWindow{first.contact.point, 0.75 * first.window.grid.sizeX()};
+    if (view.closeUp) figure.window = FigureWindow{first.contact.point, 0.75 * bentSize(first)};
     return cloudFigureSvg(cloud.positions(), positions, depth, figure, renderer);
 }
 

@@ -189,7 +189,7 @@ private:
 
 PatchSurface::PatchSurface(const Patch& patch, std::span<const glm::dvec3> positions, double cueRadius)
     : edge(edgeOf(patch, patch.coarse ? patch.coarse->object().positions() : positions)),
-      mostResponse(*std::ranges::max_element(patch.response.values())), inward(patch.forceDirection())
+      mostResponse(palp::mostResponse(patch)), inward(patch.forceDirection())
 {
     // Of the largest response: below the first nothing shows, below the second no slope.
     constexpr double kNotable = 1e-3, kSlopes = 1e-2; // [1]

@@ -48,10 +48,11 @@ std::vector<ViewSegment> linesOf(const Chart& chart, double window)
 } // namespace
 
 TouchView::TouchView(const SoftObject& object, const PatchSettings& settings)
-    : object_(object), settings_(settings), skin_(object.positions(), object.index()),
-      restNormals_(skin_.normals(object.positions())), oneSided_(skin_.turnOutwards(object.positions(), restNormals_)),
-      normals_(restNormals_), positions_(object.positions().begin(), object.positions().end()),
-      deflections_(object.size()), stiffness_(object.cloud().stiffness())
+    : object_(object), bent_(bentSize(object, settings)), fingertip_(settings.footprintRadius),
+      skin_(object.positions(), object.index()), restNormals_(skin_.normals(object.positions())),
+      oneSided_(skin_.turnOutwards(object.positions(), restNormals_)), normals_(restNormals_),
+      positions_(object.positions().begin(), object.positions().end()), deflections_(object.size()),
+      stiffness_(object.cloud().stiffness())
 {
     if (!object.mesh().faces.empty()) mesh_.emplace(object);
     findRelief();
@@ -60,16 +61,16 @@ TouchView::TouchView(const SoftObject& object, const PatchSettings& settings)
 void TouchView::findRelief()
 {
     // Each point sees it in the noise of its own normal.
-    relief_ = skin_.smoothed(restRelief(object_.positions(), restNormals_, object_.spacing(), kCue * settings_.window));
+    relief_  = skin_.smoothed(restRelief(object_.positions(), restNormals_, object_.spacing(), kCue * bent_));
     hollows_ = relief_;
     if (mesh_) mesh_->relieve(relief_, restNormals_);
 }
 
 void TouchView::use(const PatchSettings& settings)
 {
-    const bool sameReach = settings.window == settings_.window;
-    settings_            = settings;
-    if (!sameReach) findRelief();
+    const double before = std::exchange(bent_, bentSize(object_, settings));
+    fingertip_          = settings.footprintRadius;
+    if (bent_ != before) findRelief();
 }
 
 void TouchView::take(const Patch* patch)
@@ -79,7 +80,7 @@ void TouchView::take(const Patch* patch)
                now.points.size() == shown_.points;
     };
     if (patch ? same(*patch) : shown_.points == 0) return;
-    surface_ = patch ? PatchSurface(*patch, object_.positions(), kCue * settings_.window) : PatchSurface();
+    surface_ = patch ? PatchSurface(*patch, object_.positions(), kCue * bent_) : PatchSurface();
     shown_   = patch ? Shown{patch->contact.point, patch->compliance, patch->points.size()} : Shown{};
     if (mesh_) mesh_->take(surface_);
 }
@@ -164,7 +165,7 @@ void TouchView::addHand(const Patch& patch, Pressed by, const TouchLook& look, c
     }
     if (!look.overlays.arrows) return;
     const double     strongest = look.strongest > 0 ? look.strongest : std::abs(by.force);
-    const double     longest   = kLongest * settings_.window;
+    const double     longest   = kLongest * bent_;
     const double     length    = strongest > 0 ? longest * std::min(1.0, std::abs(by.force) / strongest) : 0;
     const glm::dvec3 against   = hand && glm::length(hand->force) > 0 ? glm::normalize(hand->force) : -inward;
     scene_.force               = ViewSegment{proxy, proxy + length * against};
@@ -177,7 +178,7 @@ void TouchView::addStylus(const std::optional<TouchHand>& hand)
     constexpr double kLength = 0.5, kThick = 1.5; // of the window; of an arrow's shaft [1]
     if (!hand || !hand->turn || !scene_.hip) return;
     scene_.stylus = ViewStylus{*scene_.hip, *hand->turn * glm::dvec3(0, 0, 1), *hand->turn * glm::dvec3(0, 1, 0),
-                               kLength * settings_.window, kThick * scene_.arrowRadius};
+                               kLength * bent_, kThick * scene_.arrowRadius};
 }
 
 void TouchView::addOutline(double load, double exaggeration)
@@ -193,7 +194,7 @@ void TouchView::addOutline(double load, double exaggeration)
 /// What a fit and a chart made of the points.
 void TouchView::addFit(const Patch& patch, const Overlays& overlays)
 {
-    if (overlays.sphere) scene_.sphere = linesOf(patch.chart, settings_.window);
+    if (overlays.sphere) scene_.sphere = linesOf(patch.chart, bent_);
     if (overlays.projected)
         eachMoving(patch, object_.positions(), [&](std::uint32_t point, const ChartPoint& place, double) {
             if (const auto on = patch.window.holds(place) ? patch.chart.lift(place) : std::nullopt)
@@ -224,10 +225,10 @@ void TouchView::show(const Patch* patch, double force, const TouchLook& look, co
     take(patch);
     bend(by.load, look.exaggeration);
     scene_               = {};
-    scene_.markerRadius  = std::min(kMarker * settings_.footprintRadius, 0.025 * settings_.window);
-    scene_.arrowRadius   = kArrow * settings_.window;
-    scene_.outlineRadius = kOutline * settings_.window;
-    scene_.cueRadius     = kCue * settings_.window;
+    scene_.markerRadius  = std::min(kMarker * fingertip_, 0.025 * bent_);
+    scene_.arrowRadius   = kArrow * bent_;
+    scene_.outlineRadius = kOutline * bent_;
+    scene_.cueRadius     = kCue * bent_;
     scene_.faces         = object_.faces();
     paint(by.load, look);
     if (mesh_) drawMesh(look);
@@ -250,12 +251,12 @@ Camera cameraAt(const Patch& patch, double aspect)
     Camera           camera;
     camera.up    = frame.normal;
     camera.toEye = glm::normalize(0.62 * frame.normal + 0.30 * frame.east - 0.72 * frame.north);
-    return framed(camera, patch.contact.point, kAround * patch.window.grid.sizeX(), aspect);
+    return framed(camera, patch.contact.point, kAround * bentSize(patch), aspect);
 }
 
 double forceThatShows(const Patch& patch, double thickness)
 {
-    const double most   = *std::ranges::max_element(patch.response.values()); // [m/N]
+    const double most   = mostResponse(patch); // [m/N]
     const double force  = thickness / (3 * most);
     const double decade = std::pow(10.0, std::floor(std::log10(force)) - 1);
     return std::round(force / decade) * decade;

@@ -110,7 +110,8 @@ private:
     void addGhost(Ground ground);
 
     const SoftObject&         object_;
-    PatchSettings             settings_;
+    double                    bent_;      ///< width of what bends under a touch [m]
+    double                    fingertip_; ///< its radius [m]
     CloudSkin                 skin_;
     std::vector<glm::dvec3>   restNormals_; // [1]
     std::vector<std::uint8_t> oneSided_;
