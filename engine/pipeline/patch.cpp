@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/whole_object.h"
 #include "engine/plate/load.h"
 
@@ -16,10 +17,15 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
 {
     constexpr double kMargin = 1.04, kFinest = 0.25; // diagonals to the side of the window; fingertips to a cell [1]
     constexpr int    kFewest = 256, kMost = 512, kTogether = 16; // cells; a multiple that a multigrid can coarsen
-    if (settings.windowOf == WindowOf::contact) return settings;
-    PatchSettings settled = settings;
-    const double  wanted  = 2 * (kMargin * object.cloud().bounds().diagonal() + 3 * object.spacing()); // [m]
-    const double  cell =
+    PatchSettings    settled = settings;
+    if (settings.windowOf == WindowOf::dent) {
+        const auto lengths = dentLengths(object, settings);
+        settled.windowOf   = WindowOf::contact;
+        if (lengths) settled.window = std::max(lengths->window(), 4 * settings.footprintRadius);
+    }
+    if (settings.windowOf != WindowOf::object) return settled;
+    const double wanted = 2 * (kMargin * object.cloud().bounds().diagonal() + 3 * object.spacing()); // [m]
+    const double cell =
         std::min(std::max(settings.window / settings.cells, kFinest * settings.footprintRadius), wanted / kFewest);
     const auto blocks = std::ceil(wanted / cell / kTogether - 1e-9);
     settled.cells     = int(std::clamp(blocks * kTogether, double(kTogether), double(kMost)));

@@ -48,12 +48,13 @@ constexpr auto namesOf(Theory)
 /// What a patch window spans.
 enum class WindowOf {
     contact, ///< a square of fixed size about the contact, whose sides hold it: the paper's
-    object ///< the whole object, as far as the chart can carry it: its own borders are free, and what is held holds it
+    object, ///< the whole object, as far as the chart can carry it: its own borders are free, and what is held holds it
+    dent    ///< a square of 8 lengths over which a dent of this object dies away, see dentLengths()
 };
 constexpr auto namesOf(WindowOf)
 {
     using enum WindowOf;
-    return std::to_array<NamedValue<WindowOf>>({{contact, "contact"}, {object, "object"}});
+    return std::to_array<NamedValue<WindowOf>>({{contact, "contact"}, {object, "object"}, {dent, "auto"}});
 }
 
 /// Whether a sheet that is pressed further than some half of its thickness resists in another way.
@@ -87,10 +88,11 @@ struct PatchSettings {
     double        tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };
 
-/// Returns the settings with the window and the cells of this object: as they are, unless the window spans the object. Then
-/// it is twice as wide as the object is long, so that it holds all of it about any contact; its cells are as wide as
-/// `window` and `cells` say, but no finer than a fourth of the fingertip; there are 256 to 512; and its sides, in
-/// the void, are free. A second time changes nothing.
+/// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what it
+/// spans. One of a dent is as wide as most places of the object ask for, or as `window` says where nothing ends a dent; that
+/// takes milliseconds, so settle once before many touches. One of the object is twice as wide as the object is long, so that
+/// it holds all of it about any contact; its cells are as wide as `window` and `cells` say, but no finer than a fourth of the
+/// fingertip; there are 256 to 512; and its sides, in the void, are free. A second time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.

@@ -9,6 +9,7 @@
 
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/dent_length.h"
 
 namespace palp {
 namespace {
@@ -50,14 +51,13 @@ std::string withOneDecimal(double value)
 /// Adds what limits a shell, or what a plate that is no shell leaves out.
 void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings)
 {
-    constexpr double kLocal = 8;                 // lengths: the window's edges then change 1 % of what a dome feels [1]
-    constexpr double kSag = 0.25, kFolded = 0.5; // [1]
+    constexpr double kSag = 0.25, kFolded = 0.5, kNearly = 0.99; // [1]
     if (!patch.flatBecause.empty())
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;
     const auto [most, least] = patch.principal;
     if (settings.windowOf == WindowOf::object) return;
-    const double     lengths = settings.window / patch.shellLength;
+    const double     window = patch.window.grid.sizeX(), lengths = window / patch.shellLength;
     constexpr double kOneWay = 0.1; // the lesser curvature over the larger, below which a dent reaches far [1]
     if (least / most < kOneWay)
         result.push_back(
@@ -65,14 +65,14 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
             std::string(least / most < -kOneWay ? "both ways against each other" : "one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    else if (lengths < kLocal)
+    else if (lengths < kNearly * kLocalWindow)
         result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
                          formatQuantity(patch.shellLength, "m") +
                          " each), so that its edges are felt; try a --window of " +
-                         formatQuantity(kLocal * patch.shellLength, "m"));
-    if (std::abs(most) * settings.window / 8 > kSag)
+                         formatQuantity(kLocalWindow * patch.shellLength, "m"));
+    if (std::abs(most) * window / 8 > kSag)
         result.push_back("the surface is too deep for the theory of shallow shells: it sags " +
-                         withOneDecimal(100 * std::abs(most) * settings.window / 8) +
+                         withOneDecimal(100 * std::abs(most) * window / 8) +
                          " % of the patch window's width, expected at most 25; try a smaller --window");
     if (patch.unrolled > kFolded)
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
@@ -107,7 +107,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     const double load    = pressOf(patch, material, std::abs(force)).load;
     const double deepest = load * mostResponse(patch);
     addTooDeep(result, patch, deepest, load);
-    const bool whole = settings.windowOf == WindowOf::object;
+    const bool   whole  = settings.windowOf == WindowOf::object;
+    const double window = patch.window.grid.sizeX(); // [m]
     if (patch.nodesWithoutPoint > 0 && !whole)
         result.push_back(
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
@@ -130,7 +131,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
                          " from that place: it is another layer, and it is what was touched");
     constexpr double kFarOffSphere =
         0.05; // of the window: surfaces then slope by a tenth and more against the sphere [1]
-    if (settings.neighbourhood == Neighbourhood::ball && patch.sphere.fit.misfit > kFarOffSphere * settings.window)
+    if (settings.neighbourhood == Neighbourhood::ball && patch.sphere.fit.misfit > kFarOffSphere * window)
         result.push_back("the points lie " + formatQuantity(patch.sphere.fit.misfit, "m") +
                          " (rms) off the fitted sphere, more than 5 % of the patch window: a smaller one follows the "
                          "surface better");
@@ -141,8 +142,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         !whole) // a shell's own stiffness ends its dents; see addCurvature()
         result.push_back(
             "there is no foundation, so the size of the patch window decides: compliance grows with its area");
-    if (const auto width = windowWanted(patch.plate); !whole && width && settings.window < *width)
-        result.push_back("the patch window of " + formatQuantity(settings.window, "m") + " is narrower than the " +
+    if (const auto width = windowWanted(patch.plate); !whole && width && window < *width)
+        result.push_back("the patch window of " + formatQuantity(window, "m") + " is narrower than the " +
                          formatQuantity(*width, "m") +
                          " that this rigidity and foundation ask for: its edges are felt");
     return result;

@@ -12,9 +12,11 @@ namespace palp {
 namespace {
 
 /// Makes the table that the scene asks for; otherwise the largest that its rate can use and its window has room for.
-FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSolver& solver)
+/// \param settings  those of the scene, settled for the object
+FootprintLattice latticeOf(const Scene& scene, const PatchSettings& settings, const SoftObject& object,
+                           PlateSolver& solver)
 {
-    const auto of = [&](int side) { return footprintLattice(object, scene.patch, side, solver); };
+    const auto of = [&](int side) { return footprintLattice(object, settings, side, solver); };
     if (scene.complianceLaw != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
     for (int side = tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
@@ -31,13 +33,12 @@ FootprintLattice latticeOf(const Scene& scene, const SoftObject& object, PlateSo
 } // namespace
 
 Deformation::Deformation(const SoftObject& object, const Scene& scene)
-    : object_(&object), law_(scene.complianceLaw), settings_(scene.patch),
-      solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, object, solver_)),
+    : object_(&object), law_(scene.complianceLaw), settings_(settledFor(object, scene.patch)),
+      solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, settings_, object, solver_)),
       firstLaw_(homogeneousLaw(object, lattice_))
 {
     if (compute::isProcessorWord(scene.solver, compute::kAutoProcessor))
-        (void)solver_.keepFaster(
-            plateTrial(settledFor(object, scene.patch).cells, int(lattice_.loads.size()), scene.patch.tolerance));
+        (void)solver_.keepFaster(plateTrial(settings_.cells, int(lattice_.loads.size()), scene.patch.tolerance));
     prepareTouch(object, settings_);
 }
 

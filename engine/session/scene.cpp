@@ -107,8 +107,12 @@ public:
     /// Returns the statement of the strongest source about the key, by itself, by its material or by its preset.
     [[nodiscard]] std::optional<Statement> about(const SceneKey& key) const
     {
+        // A window of a shell is as wide as its dents ask for, and cut from a larger body: clamped edges, which presets
+        // have, would hold its membrane as well.
         if (key.name == "edges")
-            if (auto edges = aboutEdges(key)) return edges;
+            if (auto edges = itselfOrOfShells(key, name(Edge::supported))) return edges;
+        if (key.name == "window")
+            if (auto window = itselfOrOfShells(key, name(WindowOf::dent))) return window;
         for (const Origin origin : kRanks) {
             if (auto stated = statedBy(origin, key)) return stated;
             const auto sets = sets_.find(origin);
@@ -127,17 +131,16 @@ public:
 private:
     static constexpr std::array kRanks{Origin::flag, Origin::environment, Origin::scene}; // the strongest first
 
-    /// Returns what is said about the edges by themselves; else those of a window that is cut from a larger body, if it is
-    /// a shell's: clamped ones, which presets have, would hold its membrane as well.
-    [[nodiscard]] std::optional<Statement> aboutEdges(const SceneKey& edges) const
+    /// Returns what is said about a key by itself; else the value that shells have, if the theory is theirs.
+    [[nodiscard]] std::optional<Statement> itselfOrOfShells(const SceneKey& key, std::string_view value) const
     {
         for (const Origin origin : kRanks)
-            if (auto stated = statedBy(origin, edges)) return stated;
+            if (auto stated = statedBy(origin, key)) return stated;
         const auto theory = about(sceneKey("theory"));
         if (!theory) return std::nullopt;
         const WrittenValue given{sceneKey("theory"), theory->text, theory->what};
         if (given.value<Theory>() != Theory::shell) return std::nullopt;
-        return Statement{name(Edge::supported),
+        return Statement{std::string(value),
                          theory->what,
                          {theory->origin.origin, theory->origin.where + ": theory " + theory->text}};
     }

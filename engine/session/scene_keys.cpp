@@ -394,21 +394,24 @@ SceneKey windowKey(const Control& control)
     SceneKey key = numberKey(
         {.name  = "window",
          .help  = "edge of the patch window, the square of surface that bends with the finger; or object: all of the "
-                  "object bends, free at its borders and held where the key held says so",
+                  "object bends, free at its borders and held where the key held says so; or auto, which shells have: "
+                  "8 lengths over which dents of this object die away",
          .group = kTouch,
          .unit  = "m",
-         .form  = "object, or a length from 1e-6 to 100 m, such as 70 mm",
+         .form  = "object, auto, or a length from 1e-6 to 100 m, such as 70 mm",
          .dimension = D::length,
          .bounds    = KeyBounds{1e-6, 100},
          .schema    = R"({"anyOf": [{"type": "number", "minimum": 1e-6, "maximum": 100}, {"type": "string"}]})",
          .control   = control},
         [](auto& s) -> auto& { return s.patch.window; });
     key.read = [](S& s, const V& v) {
-        s.patch.windowOf = v.text == "object" ? WindowOf::object : WindowOf::contact;
-        if (v.text != "object") s.patch.window = v.number();
+        s.patch.windowOf = v.text == "object" ? WindowOf::object
+                           : v.text == "auto" ? WindowOf::dent
+                                              : WindowOf::contact;
+        if (s.patch.windowOf == WindowOf::contact) s.patch.window = v.number();
     };
     key.write = [](const S& s) {
-        return s.patch.windowOf == WindowOf::object ? quotedJson("object") : plainNumber(s.patch.window);
+        return s.patch.windowOf == WindowOf::contact ? plainNumber(s.patch.window) : quotedJson(name(s.patch.windowOf));
     };
     return key;
 }

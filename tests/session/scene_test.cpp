@@ -127,6 +127,22 @@ TEST(Scene, AShellsWindowHasSupportedEdgesUnlessEdgesSaysOtherwise)
     EXPECT_EQ(parsed(shell + "}", overrides({{"preset", "paper"}})).patch.edges, PlateEdges{});
 }
 
+TEST(Scene, AShellsWindowIsAsWideAsItsDentsAskForUnlessWindowSaysOtherwise)
+{
+    const std::string shell = R"({"cloud": "sample:ellipsoid", "theory": "shell")";
+    const Scene       plain = parsed(shell + "}");
+    EXPECT_EQ(plain.patch.windowOf, WindowOf::dent);
+    EXPECT_EQ(plain.origins.at("window").where, "s.json: theory shell");
+    EXPECT_EQ(parseScene(sceneJson(plain), "again", ".").patch.windowOf, WindowOf::dent);
+    const Scene stated = parsed(shell + R"(, "window": "35 mm"})");
+    EXPECT_EQ(stated.patch.windowOf, WindowOf::contact);
+    EXPECT_EQ(stated.patch.window, 35e-3);
+    EXPECT_EQ(parsed(shell + R"(, "window": "auto"})", overrides({{"window", "0.03"}})).patch.window, 30e-3);
+    EXPECT_EQ(parsed(shell + "}", overrides({{"theory", "plate"}})).patch.windowOf, WindowOf::contact);
+    EXPECT_EQ(parsed(R"({"cloud": "sample:ellipsoid", "window": "auto"})").patch.windowOf, WindowOf::dent)
+        << "a foundation ends dents too";
+}
+
 TEST(Scene, EveryKeyOfEverySpellingIsRead)
 {
     const Scene scene = parsed(R"({

@@ -101,6 +101,15 @@ std::string onSides(const QualityReport& r)
            "open, or its sides are far apart";
 }
 
+std::string onDents(const QualityReport& r)
+{
+    char widths[32];
+    std::snprintf(widths, sizeof widths, "%.1f", r.window / r.dents->typical);
+    return "dents of this shell die away over " + metres(r.dents->typical) + " (" + metres(r.dents->least) + " to " +
+           metres(r.dents->most) + "); the patch window of " + metres(r.window) + " is " + widths + " of these wide" +
+           (r.window < 0.99 * r.dents->window() ? ", so that its edges are felt: set window to auto" : "");
+}
+
 std::vector<double> noiseInSpacings(const SurfaceSurvey& survey, std::size_t points)
 {
     std::vector<double> values(points);
@@ -133,12 +142,15 @@ SideSources sideSources(const SoftObject& object, bool byNormals)
 
 QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene)
 {
+    const bool isShell = scene.patch.theory == Theory::shell;
     return {cloudQuality(object),
             sideSources(object, !loaded.normals.empty()),
             loaded.report.coordinateRounding,
             scene.patch.footprintRadius,
-            scene.patch.window,
-            object.cloud().bounds().diagonal()};
+            settledFor(object, scene.patch).window,
+            object.cloud().bounds().diagonal(),
+            {},
+            isShell ? dentLengths(object, scene.patch) : std::nullopt};
 }
 
 std::vector<std::string> meaningForTouch(const QualityReport& r)
@@ -158,6 +170,7 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
             "the patch window of " + metres(r.window) +
             " holds fewer than 9 points where the points are sparse: nothing can be felt there; set --window to " +
             metres(2 * kFewestAcross * q.spacing.high) + " or more");
+    if (r.dents) said.push_back(onDents(r));
     if (q.noisy95 > kNoisySpacings) said.push_back(onNoise(q));
     if (q.noise > r.fingertip / 4)
         said.push_back(
@@ -213,6 +226,9 @@ nlohmann::json jsonOf(const QualityReport& r)
             {"footprint_radius", r.fingertip},
             {"points_under_footprint", q.pointsUnder(r.fingertip)},
             {"window", r.window},
+            {"dent_lengths",
+             r.dents ? nlohmann::json{{"min", r.dents->least}, {"median", r.dents->typical}, {"max", r.dents->most}}
+                     : nlohmann::json(nullptr)},
             {"for_touch", meaningForTouch(r)}};
 }
 

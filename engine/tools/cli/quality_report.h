@@ -1,11 +1,13 @@
 #pragma once
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include "engine/cloud/cloud_quality.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/session/scene.h"
 
 namespace palp {
@@ -29,6 +31,8 @@ struct QualityReport {
     double       window    = 0; ///< edge of the patch window [m]
     double       size      = 0; ///< diagonal of the object's bounds [m]
     std::string  refusal{};     ///< why nothing of it is touched; empty if it is
+    /// Over which dents die away by themselves; empty: they do not, or the theory is not a shell's.
+    std::optional<DentLengths> dents{};
 };
 
 [[nodiscard]] QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene);

@@ -81,6 +81,7 @@ struct Stage {
           loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
     {
         sayPassedOver(renderer.processor().name, renderer.note());
+        scene.patch = settledFor(loaded.object, scene.patch);
         if (look.overlays.curvature && scene.patch.theory != Theory::shell)
             throw Error("--curvature: shows what a shell bent with; add --theory shell");
     }

@@ -194,11 +194,12 @@ void refuseOverflow(const nlohmann::json& report)
 
 void touch(const TouchOptions& options)
 {
-    const Scene          scene    = options.source.load();
+    Scene                scene    = options.source.load();
     const PatchSettings& settings = scene.patch;
     const double         force    = forceOf(options.force);
     const LoadedObject   loaded   = options.source.loadObject(scene);
     const SoftObject&    object   = loaded.object;
+    scene.patch                   = settledFor(object, scene.patch);
     const Contact        contact  = contactOf(scene, object);
     PlateSolver          solver   = openSolver(scene.solver);
     const auto           told     = solver.counts().takeovers;
