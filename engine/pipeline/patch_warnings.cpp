@@ -51,7 +51,7 @@ std::string withOneDecimal(double value)
 /// Adds what limits a shell, or what a plate that is no shell leaves out.
 void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings)
 {
-    constexpr double kSag = 0.25, kFolded = 0.5, kNearly = 0.99; // [1]
+    constexpr double kSag = 0.25, kFolded = 0.5, kNearly = 0.95; // [1]
     if (!patch.flatBecause.empty())
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;

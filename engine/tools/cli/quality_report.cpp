@@ -107,7 +107,7 @@ std::string onDents(const QualityReport& r)
     std::snprintf(widths, sizeof widths, "%.1f", r.window / r.dents->typical);
     return "dents of this shell die away over " + metres(r.dents->typical) + " (" + metres(r.dents->least) + " to " +
            metres(r.dents->most) + "); the patch window of " + metres(r.window) + " is " + widths + " of these wide" +
-           (r.window < 0.99 * r.dents->window() ? ", so that its edges are felt: set window to auto" : "");
+           (r.window < 0.95 * r.dents->window() ? ", so that its edges are felt: set window to auto" : "");
 }
 
 std::vector<double> noiseInSpacings(const SurfaceSurvey& survey, std::size_t points)
