@@ -472,12 +472,14 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     refuseIfEmpty(patch, settings);
     auto next = resampled.begin() + 1;
     if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
-    if (settings.windowOf == WindowOf::object) cutOut(patch, sparsest);
+    if (settings.windowOf == WindowOf::object) cutOut(patch, sparsest, settings.theory);
+    NodeField held{};
     if (!object.held().empty()) {
-        NodeField held = std::move((next++)->rigidity);
+        held = std::move((next++)->rigidity);
         for (double& share : held.values()) share = std::log(share);
         holdNodes(patch, held, settings.foundation);
     }
+    if (settings.windowOf == WindowOf::object && settings.theory == Theory::shell) findSheared(patch, held);
     refuseIfLoose(patch, settings);
     if (object.stiffening().empty()) return;
     patch.stiffeningAtNodes = std::move(next->rigidity);
@@ -574,7 +576,7 @@ Shell everySecondOf(const Shell& fine)
     const PlateGrid  coarse = {grid.cellsX / 2, grid.cellsZ / 2, 2 * grid.spacingX, 2 * grid.spacingZ};
     shell.bending.grid      = coarse;
     for (NodeField* field : {&shell.bending.rigidity, &shell.bending.foundationShape, &shell.membraneCompliance,
-                             &shell.curvatureX, &shell.curvatureZ, &shell.curvatureXZ})
+                             &shell.curvatureX, &shell.curvatureZ, &shell.curvatureXZ, &shell.sheared})
         *field = everySecondOf(*field, coarse);
     return shell;
 }
@@ -763,7 +765,7 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
 
 std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
-    if (!patch.curvature) return {};
+    if (!patch.curvature || !patch.covered.values().empty()) return {};
     const Footprint finger(unitLoad(patch, settings));
     const auto      felt = [&](Edge edge) {
         Shell shell         = shellOf(patch);

@@ -16,7 +16,8 @@ namespace palp {
 PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)
 {
     constexpr double kMargin = 1.04, kFinest = 0.25; // diagonals to the side of the window; fingertips to a cell [1]
-    constexpr int    kFewest = 256, kMost = 512, kTogether = 16; // cells; a multiple that a multigrid can coarsen
+    constexpr int    kFewest = 256, kTogether = 16;          // cells; a multiple that a multigrid can coarsen
+    const int        most   = settings.theory == Theory::shell ? kFewest : 512; // cells that the solver converges on
     PatchSettings    settled = settings;
     if (settings.windowOf == WindowOf::dent) {
         const auto lengths = dentLengths(object, settings);
@@ -28,7 +29,7 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
     const double cell =
         std::min(std::max(settings.window / settings.cells, kFinest * settings.footprintRadius), wanted / kFewest);
     const auto blocks = std::ceil(wanted / cell / kTogether - 1e-9);
-    settled.cells     = int(std::clamp(blocks * kTogether, double(kTogether), double(kMost)));
+    settled.cells     = int(std::clamp(blocks * kTogether, double(kTogether), double(most)));
     settled.window    = std::max(wanted, settled.cells * cell);
     settled.edges     = {Edge::free, Edge::free, Edge::free, Edge::free};
     return settled;

@@ -92,7 +92,7 @@ struct PatchSettings {
 /// spans. One of a dent is as wide as most places of the object ask for, or as `window` says where nothing ends a dent; that
 /// takes milliseconds, so settle once before many touches. One of the object is twice as wide as the object is long, so that
 /// it holds all of it about any contact; its cells are as wide as `window` and `cells` say, but no finer than a fourth of the
-/// fingertip; there are 256 to 512; and its sides, in the void, are free. A second time changes nothing.
+/// fingertip; there are 256 to 512, and of shells 256; and its sides, in the void, are free. A second time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.
@@ -129,7 +129,9 @@ struct Patch {
     double      thickness   = 0; ///< of the object at the contact [m]
     std::size_t nodesWithoutPoint = 0; ///< see Resampled
     NodeField   covered{};     ///< share of the sheet at the nodes, where the window spans the object [1]; empty: all
+    double      beyond    = 1; ///< rigidity beyond the sheet's border over the sheet's [1]; 1: there is no border
     std::size_t heldNodes = 0; ///< nodes that the scene holds
+    NodeField   sheared{};     ///< see Shell, where the window spans the object
     /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.
     std::optional<LargeLaw> large;
     std::string             linearBecause;        ///< why it is not there although it was asked for

@@ -56,16 +56,16 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;
     const auto [most, least] = patch.principal;
-    if (settings.windowOf == WindowOf::object) return;
-    const double     window = patch.window.grid.sizeX(), lengths = window / patch.shellLength;
+    const bool       whole   = settings.windowOf == WindowOf::object;
+    const double     window = bentSize(patch), lengths = window / patch.shellLength;
     constexpr double kOneWay = 0.1; // the lesser curvature over the larger, below which a dent reaches far [1]
-    if (least / most < kOneWay)
+    if (!whole && least / most < kOneWay)
         result.push_back(
             "the surface is curved " +
             std::string(least / most < -kOneWay ? "both ways against each other" : "one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    else if (lengths < kNearly * kLocalWindow)
+    else if (!whole && lengths < kNearly * kLocalWindow)
         result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
                          formatQuantity(patch.shellLength, "m") +
                          " each), so that its edges are felt; try a --window of " +

@@ -41,18 +41,19 @@ double shearWork(const Shell& shell, const NodeField& w)
     constexpr double kShare = 5.0 / 6; // of the thickness that bears shear evenly: Reissner's [1]
     const PlateGrid& g      = shell.bending.grid;
     const Moments    m(shell.bending, w);
-    const NodeField& C    = shell.membraneCompliance;
-    double           work = 0;
+    const NodeField& C      = shell.membraneCompliance;
+    const auto       counts = [&](int i, int j) { return shell.sheared.values().empty() ? 1 : shell.sheared(i, j); };
+    double           work   = 0;
     // Halfway between two inner nodes both terms of a component of div M lie at the same place. 1/(G h) is 2 (1 + nu) C.
     for (int i = 1; i + 1 < g.cellsX; ++i)
         for (int j = 1; j < g.cellsZ; ++j) {
             const double q = (m.x(i + 1, j) - m.x(i, j)) / g.spacingX + (m.xz(i, j) - m.xz(i, j - 1)) / g.spacingZ;
-            work += q * q * (C(i, j) + C(i + 1, j)) / 2;
+            work += q * q * (counts(i, j) * C(i, j) + counts(i + 1, j) * C(i + 1, j)) / 2;
         }
     for (int i = 1; i < g.cellsX; ++i)
         for (int j = 1; j + 1 < g.cellsZ; ++j) {
             const double q = (m.z(i, j + 1) - m.z(i, j)) / g.spacingZ + (m.xz(i, j) - m.xz(i - 1, j)) / g.spacingX;
-            work += q * q * (C(i, j) + C(i, j + 1)) / 2;
+            work += q * q * (counts(i, j) * C(i, j) + counts(i, j + 1) * C(i, j + 1)) / 2;
         }
     return work * 2 * (1 + shell.bending.poissonRatio) / kShare * g.spacingX * g.spacingZ;
 }

@@ -23,6 +23,8 @@ struct Shell {
     NodeField  membraneCompliance; ///< C [m/N], > 0
     PlateEdges stressEdges{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
     NodeField  curvatureX, curvatureZ, curvatureXZ; ///< kx, kz, kxz [1/m], > 0 where the surface bulges to the finger
+    NodeField sheared{}; ///< share of shearWork() that counts at the nodes [1]: none where they stand for no free sheet
+                         ///< or its sides; empty: all
 };
 
 /// Returns in one sentence why a shell cannot be solved; empty if it can.

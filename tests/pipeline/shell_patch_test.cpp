@@ -216,8 +216,8 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     const auto lengths = [](double count) { return [=](Patch& p) { p.shellLength = kShell.window / count; }; };
     const auto curved  = [](double most, double least) { return [=](Patch& p) { p.principal = {most, least}; }; };
     const auto folded  = [](double share) { return [=](Patch& p) { p.unrolled = share; }; };
-    EXPECT_FALSE(says("lengths of the shell wide", lengths(8.01)));
-    EXPECT_TRUE(says("is 7.9 lengths of the shell wide", lengths(7.9)));
+    EXPECT_FALSE(says("lengths of the shell wide", lengths(7.61)));
+    EXPECT_TRUE(says("is 7.5 lengths of the shell wide", lengths(7.5)));
     EXPECT_TRUE(says(("try a --window of " + formatQuantity(80e-3, "m")).c_str(), lengths(4)));
     EXPECT_FALSE(says("the surface is curved", curved(20, 2.1)));
     EXPECT_TRUE(says("curved one way", curved(20, 1.9)));

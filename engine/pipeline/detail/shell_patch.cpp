@@ -9,6 +9,7 @@
 
 #include "engine/core/extremes.h"
 #include "engine/pipeline/detail/touched_surface.h"
+#include "engine/pipeline/detail/whole_object.h"
 
 namespace palp {
 namespace {
@@ -62,22 +63,24 @@ std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject
 /// Fills in what the membrane gives way by.
 void fillMembrane(Patch& patch, const Material& material)
 {
+    const NodeField sheet    = sheetRigidity(patch);
     patch.membraneCompliance = NodeField(patch.plate.grid);
-    for (std::size_t n = 0; n < patch.membraneCompliance.values().size(); ++n)
-        patch.membraneCompliance.values()[n] =
-            1 / (material.modulus(patch.plate.rigidity.values()[n]) * material.thickness);
+    for (std::size_t n = 0; n < sheet.values().size(); ++n)
+        patch.membraneCompliance.values()[n] = 1 / (material.modulus(sheet.values()[n]) * material.thickness);
+    cutOutMembrane(patch);
 }
 
 /// Returns whether the membrane adds nothing that a solver's tolerance would show: the plate's own path is taken then.
 ///
-/// Of the window's slowest wave, bending resists by 4 pi^4 D / a^4 and the membrane of a sphere by k^2 / C.
-bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field)
+/// Of the slowest wave of what bends, bending resists by 4 pi^4 D / a^4 and the membrane of a sphere by k^2 / C.
+/// \param foundation  what lies below [Pa/m], without what holds an object
+bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field, double foundation)
 {
     constexpr double kNothing = 1e-6; // of the stiffness [1]
     const double     k2       = std::max({meanOfSquares(field.x), meanOfSquares(field.z), meanOfSquares(field.xz)});
-    const double     a = patch.plate.grid.sizeX(), wave = 4 * std::pow(std::numbers::pi / a, 4);
-    return k2 / geometricMean(patch.membraneCompliance.values()) <
-           kNothing * (wave * geometricMean(patch.plate.rigidity.values()) + patch.plate.foundation);
+    const double     wave     = 4 * std::pow(std::numbers::pi / bentSize(patch), 4);
+    return k2 / extremesOf(patch.membraneCompliance.values()).least <
+           kNothing * (wave * geometricMean(sheetRigidity(patch).values()) + foundation);
 }
 
 } // namespace
@@ -101,7 +104,8 @@ Shell shellOf(const Patch& patch)
             stressEdgesFor(patch.plate.edges),
             curvature(&CurvatureField::x),
             curvature(&CurvatureField::z),
-            curvature(&CurvatureField::xz)};
+            curvature(&CurvatureField::xz),
+            patch.sheared};
 }
 
 Shell homogeneousOf(const Shell& shell)
@@ -121,21 +125,18 @@ Shell homogeneousOf(const Shell& shell)
 
 void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
-    if (settings.large == Large::on) fillMembrane(patch, object.material());
+    if (settings.large == Large::on || settings.theory == Theory::shell) fillMembrane(patch, object.material());
     if (settings.theory == Theory::plate) return;
     const auto stayFlat = [&](const char* why) { patch.flatBecause = why; };
     if (settings.neighbourhood == Neighbourhood::ball)
         return stayFlat("the points of a ball are no surface with a curvature; set neighbourhood surface");
-    if (settings.windowOf == WindowOf::object)
-        return stayFlat("the solver of shells does not carry the borders of a whole object; give window a length");
     if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
     patch.curvature = findCurvature(patch, object, settings);
     if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
 
     const Material& material = object.material();
-    fillMembrane(patch, material);
-    const int    middle = settings.cells / 2;
-    const double x = patch.curvature->x(middle, middle), z = patch.curvature->z(middle, middle),
+    const int       middle   = settings.cells / 2;
+    const double    x = patch.curvature->x(middle, middle), z = patch.curvature->z(middle, middle),
                  xz   = patch.curvature->xz(middle, middle);
     const double mean = (x + z) / 2, apart = std::hypot((x - z) / 2, xz);
     patch.principal   = {mean + std::copysign(apart, mean), mean - std::copysign(apart, mean)};
@@ -143,10 +144,11 @@ void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& set
                             ? std::sqrt(patch.principal.first * patch.principal.second)
                             : std::abs(patch.principal.first);
     patch.shellLength = lengthRoot(material) / std::sqrt(felt);
+    cutOutCurvature(patch);
     if (const auto why = whyUnsolvable(shellOf(patch))) {
         patch.flatBecause = *why;
         patch.curvature.reset();
-    } else if (isAsGoodAsFlat(patch, *patch.curvature)) {
+    } else if (isAsGoodAsFlat(patch, *patch.curvature, settings.foundation)) {
         patch.curvature.reset();
     }
 }

@@ -8,16 +8,29 @@ namespace palp {
 [[nodiscard]] bool isOnSheet(const Patch& patch, std::size_t node);
 
 /// Leaves of a patch's plate what the object covers: beyond its border the rigidity is next to nothing, so that the border
-/// is free. Fills in patch.covered.
+/// is free. Fills in patch.covered and patch.beyond.
 /// \param spacing  of the points where they are farthest apart [m]
 /// \pre the plate's rigidity is that of the sheet, also beyond its border
-void cutOut(Patch& patch, double spacing);
+void cutOut(Patch& patch, double spacing, Theory theory);
+
+/// Does the same with the membrane, which gives way beyond the border.
+/// \pre its compliance is that of the sheet, also beyond its border
+void cutOutMembrane(Patch& patch);
+
+/// Takes away the curvature beyond the border.
+/// \pre the patch has one
+void cutOutCurvature(Patch& patch);
 
 /// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are: with
 /// 100 D / cell^4 a dent dies away within a cell.
 /// \param held        share of each node that is held [1], see SoftObject::withHeld
 /// \param foundation  of the scene [Pa/m]
 void holdNodes(Patch& patch, const NodeField& held, double foundation);
+
+/// Finds where the sheet bends freely: neither at its border, nor where it is held. The moments jump there, over one cell
+/// instead of none, and their slopes are no forces. Fills in patch.sheared.
+/// \param held  as holdNodes() has it; empty: nothing is
+void findSheared(Patch& patch, const NodeField& held);
 
 /// Returns the rigidity of the sheet at the nodes [N m], also where cutOut() has taken it away.
 [[nodiscard]] NodeField sheetRigidity(const Patch& patch);

@@ -67,6 +67,19 @@ void printWindow(const nlohmann::json& window)
     std::printf("\n");
 }
 
+void printShell(const nlohmann::json& shell)
+{
+    const auto quantity = [](const nlohmann::json& number, const char* unit) { return formatQuantity(number, unit); };
+    std::printf("  shell              curvatures %s and %s, window %.1f lengths of %s",
+                quantity(shell["curvatures"][0], "1/m").c_str(), quantity(shell["curvatures"][1], "1/m").c_str(),
+                shell["window_lengths"].get<double>(), quantity(shell["length"], "m").c_str());
+    if (!shell["felt_stiffness_supported"].is_null())
+        std::printf(", felt %s with supported and %s with clamped edges",
+                    quantity(shell["felt_stiffness_supported"], "N/m").c_str(),
+                    quantity(shell["felt_stiffness_clamped"], "N/m").c_str());
+    std::printf("\n");
+}
+
 void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)
 {
     const PatchSettings& settings = scene.patch;
@@ -98,15 +111,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
-    if (const auto& shell = r["shell"]; !shell.is_null())
-        std::printf(
-            "  shell              curvatures %s and %s, window %.1f lengths of %s, felt %s with supported and %s with "
-            "clamped edges\n",
-            formatQuantity(shell["curvatures"][0], "1/m").c_str(),
-            formatQuantity(shell["curvatures"][1], "1/m").c_str(), shell["window_lengths"].get<double>(),
-            formatQuantity(shell["length"], "m").c_str(),
-            formatQuantity(shell["felt_stiffness_supported"], "N/m").c_str(),
-            formatQuantity(shell["felt_stiffness_clamped"], "N/m").c_str());
+    if (const auto& shell = r["shell"]; !shell.is_null()) printShell(shell);
     if (const auto& large = r["large"]; !large.is_null()) printLarge(large);
     if (!scene.material.isLinear() || r["stiffening"].get<double>() > 0)
         std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
@@ -200,10 +205,10 @@ void touch(const TouchOptions& options)
     const LoadedObject   loaded   = options.source.loadObject(scene);
     const SoftObject&    object   = loaded.object;
     scene.patch                   = settledFor(object, scene.patch);
-    const Contact        contact  = contactOf(scene, object);
-    PlateSolver          solver   = openSolver(scene.solver);
-    const auto           told     = solver.counts().takeovers;
-    const Patch          patch    = deform(object, contact, settings, solver);
+    const Contact contact         = contactOf(scene, object);
+    PlateSolver   solver          = openSolver(scene.solver);
+    const auto    told            = solver.counts().takeovers;
+    const Patch   patch           = deform(object, contact, settings, solver);
     sayTakeover(solver.takeoverSince(told, patch.report.solver));
     demandDeformed(patch);
 
