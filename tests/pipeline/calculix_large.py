@@ -8,7 +8,6 @@ and after each the depth is the work of the load over the force. The tests read 
 """
 
 import os
-import subprocess
 import sys
 
 import calculix_shells as shells
@@ -27,31 +26,24 @@ INCREMENTS = 10
 
 
 def depths(folder, name, thickness, force, cells):
-    place, stiffness, mirrored, around = next(
-        (o[1], o[2], o[4], o[5]) for o in shells.OBJECTS if o[0] == name and o[3] == thickness
-    )
-    mesh = shells.Mesh(place, cells, mirrored, stiffness, thickness, 0.8 if name == "sheet" else 0.3)
+    shape = next(o for o in shells.OBJECTS if o.name == name and o.thickness == thickness)
+    mesh = shells.Mesh(shape, cells)
     forces = shells.footprint(mesh)
-    share = 0.25 if mirrored else 0.5  # of the load, in the part that is computed
-    job = os.path.join(folder, f"large_{name}_{round(thickness * 1e3)}_{cells}")
-    linear = shells.deck(mesh, mirrored, around, forces, share * force)
+    linear = shells.deck(mesh, shape, forces, force)
     # The temperature, which is the modulus, must not grow with the load.
     step = f"*AMPLITUDE, NAME=AT_ONCE\n0., 1., 1., 1.\n*STEP, NLGEOM\n*STATIC, DIRECT\n{1 / INCREMENTS}, 1.\n"
     deep = linear.replace("*STEP\n*STATIC\n*TEMPERATURE\n", step + "*TEMPERATURE, AMPLITUDE=AT_ONCE\n")
     assert deep != linear
-    with open(job + ".inp", "w") as file:
-        file.write(deep)
-    done = subprocess.run(["ccx", os.path.basename(job)], cwd=folder, capture_output=True, text=True)
+    job = f"large_{name}_{round(thickness * 1e3)}_{cells}"
+    lines, said = shells.run(folder, job, deep)
     result = []
-    with open(job + ".dat") as file:
-        for line in file:
-            words = line.split()
-            if words[:1] == ["displacements"]:
-                result.append(0.0)
-            elif len(words) == 4 and words[0].isdigit():
-                result[-1] += forces[int(words[0])] * -float(words[3])
+    for words in lines:
+        if words[:1] == ["displacements"]:
+            result.append(0.0)
+        elif result:
+            result[-1] += shells.depth(words, shape, forces)
     if len(result) < INCREMENTS:
-        sys.stderr.write(f"{job}: {len(result)} of {INCREMENTS} increments; ccx said:\n{done.stdout[-1500:]}\n")
+        sys.stderr.write(f"{job}: {len(result)} of {INCREMENTS} increments; ccx said:\n{said[-1500:]}\n")
     return result
 
 

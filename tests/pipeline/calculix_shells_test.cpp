@@ -1,5 +1,6 @@
 #include "tests/pipeline/calculix_shells.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -21,19 +22,26 @@ namespace {
 
 constexpr double kModulus = 1e6, kSpacing = 0.5e-3; ///< [Pa], [m] spots of 4 mm are smoothed by it
 
+using Where = std::function<bool(const glm::dvec3& place)>;
+
 /// A surface x, y -> place, and its modulus.
 struct Object {
     std::function<glm::dvec3(double, double)> place;
     double                                    sizeX = 0, sizeY = 0; ///< about, along both [m]
     double                                    spot = 1, off = 0;    ///< times stiffer [1], beside the touch [m]
     double                                    window = 40e-3;       ///< [m]
+    double                                    slope  = 0;           ///< of the modulus along x, over its mean [1/m]
+    glm::dvec3                                touch{};              ///< [m]; 0: where the surface is at x = y = 0
+    glm::dvec3                                outward{0, 0, 1};
+    Where inside{}, held{}; ///< what there is of it; what holds it, in a window that spans it
 };
 
-std::function<glm::dvec3(double, double)> cap(const glm::dvec3& halfAxes)
+std::function<glm::dvec3(double, double)> cap(const glm::dvec3& halfAxes, double tilt = 0)
 {
     return [=](double x, double y) { // an azimuthal map that keeps areas on the sphere
-        const double rest = std::sqrt(1 - (x * x + y * y) / 4);
-        return halfAxes * glm::dvec3(x * rest, y * rest, 1 - (x * x + y * y) / 2);
+        const double rest = std::sqrt(1 - (x * x + y * y) / 4), a = x * rest, c = 1 - (x * x + y * y) / 2;
+        return halfAxes *
+               glm::dvec3(a * std::cos(tilt) + c * std::sin(tilt), y * rest, c * std::cos(tilt) - a * std::sin(tilt));
     };
 }
 
@@ -45,19 +53,105 @@ std::function<glm::dvec3(double, double)> turned(const std::function<double(doub
     };
 }
 
-Object objectNamed(std::string_view name)
+std::function<glm::dvec3(double, double)> flat(double size)
 {
-    const glm::dvec3 round(50e-3);
+    return [=](double x, double y) { return glm::dvec3(size / 2 * x, size / 2 * y, 0); };
+}
+
+/// Objects that are held at their border, which no window spans.
+Object curvedObject(std::string_view name)
+{
+    const glm::dvec3 round(50e-3), axes(60e-3, 45e-3, 35e-3);
     if (name == "sphere") return {cap(round), 0.1, 0.1};
-    if (name == "ellipsoid") return {cap({60e-3, 45e-3, 35e-3}), 0.12, 0.09, 1, 0, 60e-3}; // 12 lengths, it is flatter
+    // Unlike curvatures reach farther: 12 to 20 lengths.
+    if (name == "ellipsoid") return {cap(axes), 0.12, 0.09, 1, 0, 100e-3};
+    if (name == "slope") return {cap(axes), 0.12, 0.09, 1, 0, 100e-3, 1 / 66e-3};
     if (name == "wart_under") return {cap(round), 0.1, 0.1, 10};
     if (name == "wart_beside") return {cap(round), 0.1, 0.1, 10, 8e-3};
     if (name == "soft_spot") return {cap(round), 0.1, 0.1, 0.2};
+    Object shoulder{cap(axes, std::numbers::pi / 4), 0.12, 0.09, 1, 0, 50e-3};
+    shoulder.outward = glm::normalize(shoulder.place(0, 0) / (axes * axes));
+    return shoulder;
+}
+
+/// Objects that are held at their ends, which the window spans.
+Object heldObject(std::string_view name)
+{
     // What is not curved both ways is held at its ends, which the window has to span.
     if (name == "tube") return {turned([](double) { return 40e-3; }), 0.25, 0.08, 1, 0, 80e-3};
     if (name == "waist")
         return {turned([](double y) { return 120e-3 - std::sqrt(80e-3 * 80e-3 - y * y); }), 0.25, 0.08, 1, 0, 80e-3};
-    return {[](double x, double y) { return glm::dvec3(20e-3 * x, 20e-3 * y, 0); }, 0.04, 0.04};
+    if (name == "sheet") return {flat(40e-3), 0.04, 0.04};
+    constexpr double kWave = 2 * std::numbers::pi / 60e-3, kCrest = 25e-3; // [1/m], [m]
+    return {[](double x, double y) {
+                return glm::dvec3(30e-3 * x, 30e-3 * y, std::cos(kWave * 30e-3 * x) / (kCrest * kWave * kWave));
+            },
+            0.062,
+            0.06,
+            1,
+            0,
+            61e-3}; // 62.2 along the surface, 60 across
+}
+
+/// Objects with borders of their own, in a window that spans them.
+Object wholeObject(std::string_view name)
+{
+    const auto from = [](const glm::dvec3& p) { return std::hypot(p.x, p.y); };
+    if (name.starts_with("drum")) {
+        Object drum{flat(130e-3), 0.13, 0.13, name == "drum" ? 1.0 : 10.0, 8e-3};
+        drum.held = [](const glm::dvec3& p) { return std::max(std::abs(p.x), std::abs(p.y)) > 60e-3; };
+        return drum;
+    }
+    if (name == "lobe") {
+        Object lobe{flat(120e-3), 0.12, 0.12};
+        lobe.touch  = {40e-3, 0, 0};
+        lobe.held   = [](const glm::dvec3& p) { return p.x < 0; };
+        lobe.inside = [](const glm::dvec3& p) {
+            const double share = std::max(p.x, 0.0) / 60e-3;
+            return p.x > -10e-3 && std::abs(p.y) < 25e-3 * std::sqrt(1 - 0.96 * share * share);
+        };
+        return lobe;
+    }
+    const double bend = name == "disc" ? 0 : name == "dish" ? 10 : 5; // [1/m]
+    const auto   high = [=](double r) { return bend > 0 ? (std::sqrt(1 - bend * bend * r * r) - 1) / bend : 0; };
+    Object bowl{[=](double x, double y) { return glm::dvec3(40e-3 * x, 40e-3 * y, high(40e-3 * std::hypot(x, y))); },
+                0.08, 0.08};
+    bowl.touch   = {24e-3, 0, high(24e-3)};
+    bowl.outward = {24e-3 * bend, 0, std::sqrt(1 - std::pow(24e-3 * bend, 2))};
+    bowl.inside  = [=](const glm::dvec3& p) { return from(p) < 40e-3; };
+    bowl.held    = [=](const glm::dvec3& p) { return from(p) < 8e-3; };
+    return bowl;
+}
+
+/// How an object of the table is compared.
+enum class Kind {
+    curved, ///< both ways alike: a window of some eight lengths is enough
+    held,   ///< the window's edges are the object's
+    whole   ///< the window spans the object, which has borders of its own
+};
+
+Kind kindOf(std::string_view name)
+{
+    for (const std::string_view held : {"tube", "waist", "ridge", "sheet"})
+        if (name == held) return Kind::held;
+    for (const std::string_view whole : {"drum", "drum_wart", "lobe", "disc", "shallow_dish", "dish"})
+        if (name == whole) return Kind::whole;
+    return Kind::curved;
+}
+
+Object objectNamed(std::string_view name)
+{
+    Object object = kindOf(name) == Kind::curved ? curvedObject(name)
+                    : kindOf(name) == Kind::held ? heldObject(name)
+                                                 : wholeObject(name);
+    if (object.touch == glm::dvec3(0)) object.touch = object.place(0, 0);
+    return object;
+}
+
+double modulusAt(const Object& object, const glm::dvec3& p)
+{
+    const double squared = (p.x - object.off) * (p.x - object.off) + p.y * p.y;
+    return kModulus * (1 + object.slope * p.x + (object.spot - 1) * std::exp(-squared / (2 * 4e-3 * 4e-3)));
 }
 
 SoftObject cloudOf(const Object& object, double thickness)
@@ -65,67 +159,94 @@ SoftObject cloudOf(const Object& object, double thickness)
     std::mt19937                           random(7);
     std::uniform_real_distribution<double> along(-1, 1);
     std::vector<glm::dvec3>                points;
-    std::vector<double>                    moduli;
+    std::vector<double>                    moduli, held;
     const auto                             count = std::size_t(object.sizeX * object.sizeY / (kSpacing * kSpacing));
     for (std::size_t n = 0; n < count; ++n) {
         const double     x = along(random), y = along(random);
-        const glm::dvec3 p       = object.place(x, y);
-        const double     squared = (p.x - object.off) * (p.x - object.off) + p.y * p.y;
+        const glm::dvec3 p = object.place(x, y);
+        if (object.inside && !object.inside(p)) continue;
         points.push_back(p);
-        moduli.push_back(kModulus * (1 + (object.spot - 1) * std::exp(-squared / (2 * 4e-3 * 4e-3))));
+        moduli.push_back(modulusAt(object, p));
+        if (object.held) held.push_back(object.held(p));
     }
-    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
-                      {.thickness = thickness, .poissonRatio = 0.45});
+    SoftObject soft(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
+                    {.thickness = thickness, .poissonRatio = 0.45});
+    return object.held ? std::move(soft).withHeld(std::move(held)) : soft;
 }
 
-/// 1/c of a touch in the middle [N/m].
-double feltBy(Theory theory, Edge edge, const CalculixShell& of)
+PatchSettings settingsOf(const Object& object, Theory theory, Edge edge)
 {
-    const Object     object = objectNamed(of.name);
-    const SoftObject cloud  = cloudOf(object, of.thickness);
-    PatchSettings    settings{.window = object.window, .theory = theory};
+    PatchSettings settings{.window = object.window, .theory = theory};
     settings.edges = {edge, edge, edge, edge};
     if (object.window > 70e-3) settings.cells = 128;
-    PlateSolver      host("host");
-    const glm::dvec3 middle = object.place(0, 0);
-    return 1 / deform(cloud, touchAt(cloud, middle, glm::dvec3(0, 0, 1), 10e-3), settings, host).compliance;
+    return settings;
+}
+
+/// 1/c of a touch [N/m].
+double feltBy(Theory theory, Edge edge, const CalculixShell& of)
+{
+    const Object     object   = objectNamed(of.name);
+    const SoftObject cloud    = cloudOf(object, of.thickness);
+    PatchSettings    settings = settingsOf(object, theory, edge);
+    if (object.held) settings.windowOf = WindowOf::object;
+    PlateSolver host("host");
+    return 1 / deform(cloud, touchAt(cloud, object.touch, object.outward, 10e-3), settings, host).compliance;
 }
 
 TEST(CalculixShells, TheirMeshesAreFineEnough)
 {
-    for (const CalculixShell& of : kCalculixShells) EXPECT_LT(std::abs(of.meshError), 0.02) << of.name;
+    for (const CalculixShell& of : kCalculixShells) EXPECT_LT(std::abs(of.meshError), 0.005) << of.name;
 }
 
 TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
 {
     for (const CalculixShell& of : kCalculixShells) {
-        const Object object = objectNamed(of.name);
-        if (object.window > 70e-3 || of.name == "sheet") continue;
+        if (kindOf(of.name) != Kind::curved) continue;
         const double felt = feltBy(Theory::shell, Edge::supported, of) / of.stiffness - 1;
         const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: spheres 4 and 2 %, ellipsoids 5 and 8, spots 2 to 8. What is left has the sign of a theory that is thin
-        // and of edges that are near.
-        EXPECT_LT(std::abs(felt), of.name == "sphere" ? 0.05 : 0.09) << of.name << ", " << of.thickness << " m";
-        EXPECT_GT(std::abs(flat), 0.4) << of.name << ": then nothing is shown";
+        // Measured: spheres 0 to 4 %, ellipsoids and slope 3 to 5, at the shoulder 6 and 9, spots 2 to 8. What is
+        // left has the sign of a body that gives way as a whole, which no window sees.
+        const bool even = of.name == "sphere" || of.name == "ellipsoid" || of.name == "slope";
+        EXPECT_LT(std::abs(felt), even ? 0.05 : 0.1) << of.name << ", " << of.thickness << " m";
+        EXPECT_GT(std::abs(flat), 0.2) << of.name << ": then nothing is shown";
     }
 }
 
 TEST(CalculixShells, WhatIsNotLiesBetweenSupportedAndClampedEdges)
 {
     for (const CalculixShell& of : kCalculixShells) {
-        if (objectNamed(of.name).window < 70e-3) continue;
-        const double supported = feltBy(Theory::shell, Edge::supported, of),
-                     clamped   = feltBy(Theory::shell, Edge::clamped, of);
-        EXPECT_LT(supported, of.stiffness) << of.name;
-        EXPECT_GT(clamped, of.stiffness) << of.name;
+        if (kindOf(of.name) != Kind::held || of.name == "sheet") continue;
+        EXPECT_LT(feltBy(Theory::shell, Edge::supported, of), of.stiffness) << of.name;
+        EXPECT_NEAR(feltBy(Theory::shell, Edge::clamped, of) / of.stiffness, 1.035, 0.04)
+            << of.name << ": held so, -0.1 to 7 % off; the tube's window spans its length and not what is around";
     }
 }
 
 TEST(CalculixShells, AFlatSheetInItsOwnFrameIsAClampedPlate)
 {
-    const CalculixShell& of = kCalculixShells.back();
-    ASSERT_EQ(of.name, "sheet");
-    EXPECT_NEAR(feltBy(Theory::shell, Edge::clamped, of) / of.stiffness, 1, 0.05);
+    const CalculixShell& of = *std::ranges::find(kCalculixShells, "sheet", &CalculixShell::name);
+    EXPECT_NEAR(feltBy(Theory::shell, Edge::clamped, of) / of.stiffness, 1, 0.02) << "measured 1.1 %";
+}
+
+TEST(CalculixShells, WhatHasBordersOfItsOwnBendsAboutWhatHoldsIt)
+{
+    for (const CalculixShell& of : kCalculixShells) {
+        if (kindOf(of.name) != Kind::whole || of.name.ends_with("dish")) continue;
+        const double felt = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
+        // Measured: lobes -0.7 and -0.1 %, drum -1.5, its wart -2.5. The disc's stem is nine cells wide and is found to half
+        // a cell, which is -5 %: by CalculiX a stem of 7.56 mm in place of 8 is 7 % softer.
+        EXPECT_LT(std::abs(felt), of.name == "disc" ? 0.07 : 0.04) << of.name << ", " << of.thickness << " m";
+    }
+}
+
+/// The limit of windows that span an object: it bends as one flat plate.
+TEST(CalculixShells, ADishIsFeltTooSoftBecauseItBendsFlat)
+{
+    for (const CalculixShell& of : kCalculixShells) {
+        if (!of.name.ends_with("dish")) continue;
+        const double felt = feltBy(Theory::shell, Edge::clamped, of) / of.stiffness - 1;
+        EXPECT_NEAR(felt, of.name == "dish" ? -0.366 : -0.203, 0.03) << "R 100 and 200 mm; the page says so";
+    }
 }
 
 /// The force of the plate alone at a depth of a touch in the middle [N]; shear across the sheet lies in series.
@@ -144,20 +265,19 @@ TEST(CalculixPresses, AreFeltUpToOneAndAHalfThicknesses)
 {
     for (const CalculixPress& of : kCalculixPresses) {
         ASSERT_LT(std::abs(of.meshError), 0.02) << of.name;
-        const Object     object = objectNamed(of.name);
-        const SoftObject cloud  = cloudOf(object, of.thickness);
-        const Edge       edge   = of.name == "sheet" ? Edge::clamped : Edge::supported;
-        PatchSettings    settings{.window = object.window, .theory = Theory::shell, .large = Large::on};
-        settings.edges = {edge, edge, edge, edge};
+        const Object     object   = objectNamed(of.name);
+        const SoftObject cloud    = cloudOf(object, of.thickness);
+        const Edge       edge     = of.name == "sheet" ? Edge::clamped : Edge::supported;
+        PatchSettings    settings = settingsOf(object, Theory::shell, edge);
+        settings.large            = Large::on;
         PlateSolver host("host");
-        const Patch patch =
-            deform(cloud, touchAt(cloud, object.place(0, 0), glm::dvec3(0, 0, 1), 10e-3), settings, host);
+        const Patch patch = deform(cloud, touchAt(cloud, object.touch, object.outward, 10e-3), settings, host);
         ASSERT_TRUE(patch.large) << of.name << patch.linearBecause;
         double deepest = 0;
         for (std::size_t n = 0; n < of.depths.size(); ++n) {
             const double depth = of.depths[n], force = of.force * double(n + 1) / double(of.depths.size());
             if (depth > 1.55 * of.thickness) break;
-            // Measured: sheet -1.4 %, spheres 2 to 4, ellipsoid 3 to 5, spots of stiffness 1 to 8, about what the linear
+            // Measured: sheet 0.7 %, spheres 2 to 4, ellipsoid 2 to 3, spots of stiffness 1 to 8, about what the linear
             // shell is off by.
             EXPECT_NEAR(forceAt(patch, depth) / force, 1, of.name == "wart_under" ? 0.085 : 0.06)
                 << of.name << ", " << of.thickness << " m, " << depth << " m deep";
