@@ -233,19 +233,20 @@ TEST(CalculixShells, WhatHasBordersOfItsOwnBendsAboutWhatHoldsIt)
     for (const CalculixShell& of : kCalculixShells) {
         if (kindOf(of.name) != Kind::whole || of.name.ends_with("dish")) continue;
         const double felt = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: lobes -0.7 and -0.1 %, drum -1.5, its wart -2.5. The disc's stem is nine cells wide and is found to half
-        // a cell, which is -5 %: by CalculiX a stem of 7.56 mm in place of 8 is 7 % softer.
-        EXPECT_LT(std::abs(felt), of.name == "disc" ? 0.07 : 0.04) << of.name << ", " << of.thickness << " m";
+        // Measured: lobes -0.3 and 0.4 %, drum -1.2, its wart -2.2, disc -3.2, whose stem is nine cells wide and is found to
+        // a part of one: by CalculiX a stem of 7.56 mm in place of 8 is 7 % softer.
+        EXPECT_LT(std::abs(felt), 0.04) << of.name << ", " << of.thickness << " m";
     }
 }
 
-/// The limit of windows that span an object: it bends as one flat plate.
-TEST(CalculixShells, ADishIsFeltTooSoftBecauseItBendsFlat)
+TEST(CalculixShells, ADishBendsAboutItsStemAsAShell)
 {
     for (const CalculixShell& of : kCalculixShells) {
         if (!of.name.ends_with("dish")) continue;
         const double felt = feltBy(Theory::shell, Edge::clamped, of) / of.stiffness - 1;
-        EXPECT_NEAR(felt, of.name == "dish" ? -0.366 : -0.203, 0.03) << "R 100 and 200 mm; the page says so";
+        EXPECT_NEAR(felt, 0, 0.05) << of.name << ": measured -4.0 and -2.9 %";
+        EXPECT_LT(feltBy(Theory::plate, Edge::clamped, of) / of.stiffness, 0.85)
+            << of.name << ": then nothing is shown";
     }
 }
 

@@ -50,7 +50,7 @@ void cutOutCurvature(Patch& patch)
 
 void holdNodes(Patch& patch, const NodeField& held, double foundation)
 {
-    constexpr double kFirm = 100, kSharp = 2; // D / cell^4; held nodes lose their hold over half the points' blur [1]
+    constexpr double kFirm = 1000, kSharp = 2; // D / cell^4; held nodes lose their hold over half the points' blur [1]
     Plate&           plate  = patch.plate;
     const NodeField  sheet  = sheetRigidity(patch);
     const double     cell   = std::max(plate.grid.spacingX, plate.grid.spacingZ);

@@ -22,7 +22,7 @@ void cutOutMembrane(Patch& patch);
 void cutOutCurvature(Patch& patch);
 
 /// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are: with
-/// 100 D / cell^4 a dent dies away within a cell.
+/// 1000 D / cell^4 a dent dies away within a fifth of a cell.
 /// \param held        share of each node that is held [1], see SoftObject::withHeld
 /// \param foundation  of the scene [Pa/m]
 void holdNodes(Patch& patch, const NodeField& held, double foundation);
