@@ -14,6 +14,7 @@ namespace palp {
 /// spacing outside of that, because random points do not reach theirs.
 /// \param positions     of the touched points in the chart [m], at least one
 /// \param pointSpacing  mean distance of the points [m], where they are farthest apart
+/// \differs the paper's patch has no border: its rigidity goes on, or ends with the window
 /// \source  closing as in Serra 1982, "Image Analysis and Mathematical Morphology"; the distance from outside as in
 ///          Felzenszwalb and Huttenlocher 2012, restricted to the border's neighbourhood
 [[nodiscard]] NodeField coveredShare(const PatchWindow& window, std::span<const ChartPoint> positions,

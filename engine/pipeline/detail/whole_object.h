@@ -9,6 +9,7 @@ namespace palp {
 
 /// Leaves of a patch's plate what the object covers: beyond its border the rigidity is next to nothing, so that the border
 /// is free. Fills in patch.covered and patch.beyond.
+/// \differs the paper's window is cut from the object and held at its sides
 /// \param spacing  of the points where they are farthest apart [m]
 /// \pre the plate's rigidity is that of the sheet, also beyond its border
 void cutOut(Patch& patch, double spacing, Theory theory);
