@@ -55,8 +55,8 @@ release_gate() {
     step soak '' "$top/bin/palp_soak" --seconds 60 --scenes samples/scenes
     step install '' test_flavour "$top" -R '^install$'
     step package '' gate_packages
-    step asan '' gate_flavour asan "$top/asan" -LE shader-gpu-assisted "$@"
-    step tsan '' gate_flavour tsan "$top/tsan" -LE shader-gpu-assisted "$@"
+    step asan '' gate_flavour asan "$top/asan" -LE "$again" "$@"
+    step tsan '' gate_flavour tsan "$top/tsan" -LE "$again" "$@"
     step 'compiler' "$([ -n "$other" ] || echo 'there is no second compiler here')" gate_flavour other "$top/other" -LE shader "$@"
     step 'second driver' "$([ -n "$driver" ] || echo 'no --driver')" run_on_driver "$top"
     step performance "$([ -n "$release" ] || echo 'no --release')" python3 tests/performance_gate.py "$release" "$top/bin/palpate"

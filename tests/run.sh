@@ -11,8 +11,9 @@ usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- 
        sh tests/run.sh --all [--driver ICD.json] [--release PROGRAM]
 
   (nothing)      every test, Release build in build/
-  --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan
-  --tsan         the same tests under ThreadSanitizer, in build/tsan
+  --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan; those that run the
+                 same code again are left out: the pages' commands, validation of shaders
+  --tsan         the same under ThreadSanitizer, in build/tsan
   --all          what a release has to pass: those three builds, validation of the shaders, fuzzing's replay, a minute of the
                  soak, the other compiler, installation and packages; ends with a table
   --driver FILE  builds, and runs the tests of shaders and pictures on the first processor of another Vulkan driver: FILE
@@ -68,6 +69,8 @@ run_on_driver() (
     exit $failures
 )
 
+again='shader-validation|shader-gpu-assisted|pages' # labels that sanitized builds leave out
+
 # build_flavour plain|asan|tsan|other FOLDER
 build_flavour() {
     sanitizers= compiler=
@@ -108,9 +111,8 @@ for flavour in ${flavours:-plain}; do
     if [ -n "$driver" ]; then run_on_driver "$folder" || failed=1; continue; fi
     say "== $flavour: testing"
     # Instrumented shaders are 20 times slower: they run with --all, or if ctest options are given.
-    excluded=
-    [ $# -gt 0 ] || excluded='-LE shader-gpu-assisted'
-    # shellcheck disable=SC2086
-    test_flavour "$folder" $excluded "$@" || failed=1
+    excluded='shader-gpu-assisted'
+    [ "$flavour" = plain ] || excluded=$again
+    if [ $# -gt 0 ]; then test_flavour "$folder" "$@"; else test_flavour "$folder" -LE "$excluded"; fi || failed=1
 done
 exit $failed

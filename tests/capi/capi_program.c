@@ -253,7 +253,8 @@ static void try_sessions(const palpate_object* object)
     hand.size        = offsetof(palpate_hand, age); /* an older program */
     hand.position[2] = 0.01;
     CLAIM(palpate_session_step(one, 107, &hand, &answer) == PALPATE_OK);
-    CLAIM(refused(palpate_session_create(NULL, NULL, &one), "object"));
+    palpate_session_destroy(one);
+    CLAIM(refused(palpate_session_create(NULL, NULL, &one), "object") && !one);
     settings.device_mass  = -1;
     palpate_session* none = NULL;
     CLAIM(refused(palpate_session_create(object, &settings, &none), "not negative") && !none);

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "engine/core/real_time.h"
+#include "tests/support/sanitized.h"
 
 namespace palp {
 namespace {
@@ -30,6 +31,7 @@ void askBelowALimit()
 
 TEST(RealTime, AProgramThatFitsIntoItsLimitOfLockedMemoryStillStartsThreads)
 {
+    if (kSanitized) GTEST_SKIP() << "a sanitizer's shadow memory is beyond every limit";
     rlimit now{};
     ASSERT_EQ(getrlimit(RLIMIT_MEMLOCK, &now), 0);
     if (geteuid() != 0 && now.rlim_max < (64U << 20U)) GTEST_SKIP() << "this user may not set the limit so high";

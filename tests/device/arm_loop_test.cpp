@@ -19,6 +19,7 @@
 #include "engine/force/force_law.h"
 #include "engine/force/governor.h"
 #include "engine/force/lateral_lean.h"
+#include "tests/support/sanitized.h"
 
 namespace palp {
 namespace {
@@ -338,11 +339,7 @@ TEST(ArmLoop, WithoutCapAndControllerTheArmShakes)
 }
 
 /// Ticks of the long run; under sanitizers, which are ten times as slow, fewer.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr long kLongRun = 1'000'000;
-#else
-constexpr long kLongRun = 10'000'000;
-#endif
+constexpr long kLongRun = kSanitized ? 1'000'000 : 10'000'000;
 
 TEST(ArmLoop, RunsForTenMillionTicksWithoutAFaultOrANonFiniteNumber)
 {

@@ -73,9 +73,10 @@ struct Factored {
 
     [[nodiscard]] std::vector<double> apply(const std::vector<float>& w) const
     {
-        std::vector<double> of(w.begin(), w.end()), result(w.size());
+        std::vector<double> of(w.size() + 1), result(w.size()); // the number before a field may be read
         auto                D = rigidity;
-        run(by.kernels->apply_f64, {D.data(), of.data(), result.data()});
+        std::ranges::copy(w, of.begin() + 1);
+        run(by.kernels->apply_f64, {D.data(), of.data() + 1, result.data()});
         return result;
     }
 };

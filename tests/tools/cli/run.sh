@@ -379,7 +379,7 @@ bad 'a damaged recording' 'the recording is damaged' replay held-arm --compare
 "$palpate" run scene.json --clock virtual --seconds 3000 --record stopped >out.txt 2>err.txt &
 session=$!
 n=0
-until [ -n "$(find stopped -name ticks.npy -size +4k 2>/dev/null)" ] || [ $n -gt 300 ]; do sleep 0.1; n=$((n + 1)); done
+until [ -n "$(find stopped -name ticks.npy -size +4k 2>/dev/null)" ] || [ $n -gt 1200 ]; do sleep 0.1; n=$((n + 1)); done
 kill -TERM $session
 wait $session && grep -q '"finished": true' stopped/session.json && passed=$((passed + 1)) || complain "a session that is stopped: exit $? $(cat err.txt)"
 bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall

@@ -1,0 +1,39 @@
+// Which reports of sanitizers are a driver's own: part of every program that may load one, see engine/compute/CMakeLists.txt.
+
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define PALP_ADDRESS_SANITIZER 1
+#endif
+#elif defined(__SANITIZE_ADDRESS__)
+#define PALP_ADDRESS_SANITIZER 1
+#endif
+
+#if defined(PALP_ADDRESS_SANITIZER)
+
+// LeakSanitizer names leaks by their library after the program has ended. A driver must still be loaded then, or its leaks
+// cannot be told from ours. The loader calls this function in place of the C library's.
+extern "C" int dlclose(void*)
+{
+    return 0;
+}
+
+extern "C" const char* __lsan_default_options()
+{
+    return "print_suppressions=0";
+}
+
+// The stacks of our own leaks contain palp:: or a test, and none of these libraries.
+extern "C" const char* __lsan_default_suppressions()
+{
+    return "leak:libvulkan_lvp.so\nleak:libLLVM\nleak:libVkLayer_khronos_validation.so\n";
+}
+
+#else
+
+// Drivers are not instrumented, so ThreadSanitizer does not see the synchronisation of their threads.
+extern "C" const char* __tsan_default_suppressions()
+{
+    return "race:libvulkan_lvp.so\nrace:libLLVM\nrace:libVkLayer_khronos_validation.so\n";
+}
+
+#endif
