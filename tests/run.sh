@@ -13,7 +13,7 @@ usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- 
   (nothing)      every test, Release build in build/
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan; those that run the
                  same code again are left out: the pages' commands, validation of shaders
-  --tsan         the same under ThreadSanitizer, in build/tsan
+  --tsan         the same under ThreadSanitizer, in build/tsan, without the long ones that start no thread
   --all          what a release has to pass: those three builds, validation of the shaders, fuzzing's replay, a minute of the
                  soak, the other compiler, installation and packages; ends with a table
   --driver FILE  builds, and runs the tests of shaders and pictures on the first processor of another Vulkan driver: FILE
@@ -70,6 +70,9 @@ run_on_driver() (
 )
 
 again='shader-validation|shader-gpu-assisted|pages' # labels that sanitized builds leave out
+# What runs on one thread has no races and takes ThreadSanitizer an hour: whole sessions in virtual time, sums of numerics.
+one_thread='^(contact|chart|fit|perception|plot)\.|^plate\.(PressDeep|LargeLaw)|^pipeline\.(ComplianceTracker|TouchedSurface|TableSolve|WholeObject)'
+one_thread="$one_thread"'|^session\.(Reversals|ClosedStrokes|Taps|Weight|Strokes|Tissue)\.|^session\.On/TenMinutes'
 
 # build_flavour plain|asan|tsan|other FOLDER
 build_flavour() {
@@ -113,6 +116,9 @@ for flavour in ${flavours:-plain}; do
     # Instrumented shaders are 20 times slower: they run with --all, or if ctest options are given.
     excluded='shader-gpu-assisted'
     [ "$flavour" = plain ] || excluded=$again
-    if [ $# -gt 0 ]; then test_flavour "$folder" "$@"; else test_flavour "$folder" -LE "$excluded"; fi || failed=1
+    left_out=
+    [ "$flavour" != tsan ] || left_out="-E $one_thread"
+    # shellcheck disable=SC2086
+    if [ $# -gt 0 ]; then test_flavour "$folder" "$@"; else test_flavour "$folder" -LE "$excluded" $left_out; fi || failed=1
 done
 exit $failed

@@ -32,7 +32,8 @@ namespace palp {
 namespace {
 
 constexpr int    kInstants = 200;
-constexpr double kZeroBy   = 30e-3; // [s] 25 ms of silence, a packet, and what the guardian may have to wait
+// 25 ms of silence, a packet, and what the guardian may have to wait; a sanitizer takes a signal and tells of it first.
+constexpr double kZeroBy = kSanitized ? 0.5 : 30e-3; // [s]
 
 enum class End { killed, writesToNowhere, aborts, runsOutOfMemory };
 constexpr std::array kNames{"IsKilled", "Crashes", "Aborts", "RunsOutOfMemory"}; ///< in the same order

@@ -50,14 +50,14 @@ EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformati
 {
     Chance        chance(seed);
     EpisodeReport report;
-    const auto    ticks = std::uint64_t(chance.scaleFrom(2000, 30'000));
+    const auto    ticks = std::uint64_t(chance.scaleFrom(2000, 100'000));
     std::string   name;
     SessionHand   hand = anyHand(scene, object, double(ticks) * 1e-3, chance, name);
     FaultyDevice  device(*hand.device, anyRate(chance), chance.bits());
     FaultyClock   clock(anyRate(chance), chance.bits());
     const double  solverRate = 20 * anyRate(chance);
     const auto    every      = std::uint64_t(chance.scaleFrom(10, 200)); // ticks
-    solver.begin(solverRate, 1.0 / 16);
+    solver.begin(solverRate, 1.0 / 64); // most answers are older ones: ticks are what is attacked here
     std::optional<FaultyRecording> recording;
     if (chance.is(1.0 / 16)) recording.emplace(scene, std::uint64_t(chance.scaleFrom(64e3, 30e6)));
 

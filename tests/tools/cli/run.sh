@@ -562,7 +562,7 @@ sed 's/"constant","value"/"odd","value"/' plate.json >odd.json
 bad 'an unknown rigidity law' 'checker, grid' solve odd.json
 
 # --- values beyond all sense
-bad 'a window beyond the world' '--window: expected a length from 1e-6 to 100 m' touch sample:sheet --window 1e300m --footprint-radius 1e299m
+bad 'a window beyond the world' '--window: expected object, auto, or a length from 1e-6 to 100 m' touch sample:sheet --window 1e300m --footprint-radius 1e299m
 for option in --thickness --footprint-radius --window; do bad "nothing of $option" "$option" touch sample:sheet $option 1e-12m; done
 bad 'a force that pulls' '--force: expected a force from 0 to 1e6 N' touch sample:sheet --force=-1N
 bad 'a force beyond the world' '--force' touch sample:sheet --force 1e308 --thickness 0.001mm

@@ -23,10 +23,10 @@ TEST(SceneControls, EveryKeyOfASceneIsThereOrCannotChangeWhileOneTouches)
     // What is touched, where, and with which solver: a new session, not another value. The law and the edges have
     // fields of their own, a preset and a material are the values that they set, and the size of the table follows from
     // the rate. How a material relaxes is the scene's, and so is what lies below it; which button of a device is its
-    // clutch is settled before it touches, and the theory, large deflections included, goes with the edges.
+    // clutch is settled before it touches; the theory, large deflections included, and what is held go with the edges.
     std::set<std::string_view> found{"cloud",      "points",       "seed",          "stiffness", "solver", "place",
                                      "from",       "start_height", "table_size",    "edges",     "preset", "material",
-                                     "relaxation", "below",        "clutch_button", "theory", "large"};
+                                     "relaxation", "below",        "clutch_button", "theory",    "large",  "held"};
     for (const SceneKey& key : sceneKeys())
         if (key.cloud == SceneKey::For::file) found.insert(key.name);
     std::size_t controls = 0;
