@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand" "$1/haply" "$1/bridge" "$1/plan" "$1/hunt" "$1/trials" "$1/recording" "$1/falcon" "$1/probes"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand" "$1/haply" "$1/bridge" "$1/plan" "$1/hunt" "$1/trials" "$1/recording" "$1/falcon" "$1/probes" "$1/capi"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -138,3 +138,11 @@ printf '<AAAAAAAAAAAAAAA>' >falcon/zero
 
 printf '# a comment\nprobe,x,y,z,nx,ny,nz,time [ms],depth [mm],force [N],other\na,0,0,0,0,0,1,0,0,0,x\na,0,0,0,0,0,1,10,0.5,0.1,x\na,0,0,0,0,0,1,20,1,0.25,x\na,0,0,0,0,0,1,30,1.5,0.5,x\na,0,0,0,0,0,1,40,2,0.9,x\n' >probes/timed
 printf 'depth,force\n0,0\n1e-4,.1\n2e-4,.2\n3e-4,.3\n4e-4,.4\n' >probes/plain
+
+# Little-endian doubles: x, y, z and a stiffness of three points; four ticks of 0.06 s, and a press of a millimetre.
+mm='\374\251\361\322\115\142\120\077' E='\000\000\000\000\200\117\022\101' tick='\270\036\205\353\121\270\256\077'
+deep='\374\251\361\322\115\142\060\277' n8='\000\000\000\000\000\000\000\000'
+printf "t$n8$n8$n8$E$mm$n8$n8$E$n8$mm$n8$E$mm$mm$n8$E" >capi/points
+printf 'j{"window": "6 mm", "cells": 8, "footprint_radius": "1 mm", "foundation": "1 MPa/m", "edges": "free"}' >capi/scene
+{ printf s; for height in "$mm" "$mm" "$n8" "$deep" "$deep"; do printf "$tick$mm$mm$height"; zeros 18; done; } >capi/hand
+{ printf 'p\001\002'; printf "$d1$d2$mm$n8"; printf '\000\001\002\003'; printf "$d2$mm$d1$d1$d2$E"; } >capi/plate
