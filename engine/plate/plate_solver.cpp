@@ -38,10 +38,10 @@ std::string stoppedAt(const SolveReport& report)
 
 constexpr std::size_t kMostKeptNodes = 129 * 129; ///< of a shell whose solver's memory is kept: some 20 MB
 
-/// Solves for footprints on a shell on the host: the whole one to the tolerance, and the others to its square root, so
+/// Solves for footprints on a shell by multigrid: the whole one to the tolerance, and the others to its square root, so
 /// that their works are right to it.
-FootprintSolution byHost(MultigridShellSolver& solver, const Shell& shell, std::span<const Footprint> loads,
-                         std::size_t whole, double tolerance)
+FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell& shell,
+                                      std::span<const Footprint> loads, std::size_t whole, double tolerance)
 {
     constexpr double       kLoosest = 1e-2; // as of a plate's footprints [1]
     std::vector<NodeField> others;
@@ -140,12 +140,14 @@ struct PlateSolver::Multigrid {
         }
     };
 
-    compute::Context            context;
-    bool                        likeTheHost; ///< smooths as the host does, and takes one load after the other
-    PlateKernels                kernels;
-    std::optional<PlateKernels> kernelsOfEights; ///< once they are needed
-    Prepared                    loads, eights;
-    MemoryShortage              shortage; ///< of memory for fields of all loads together, in numbers of one
+    compute::Context                    context;
+    bool                                likeTheHost; ///< smooths as the host does, and takes one load after the other
+    PlateKernels                        kernels;
+    std::optional<PlateKernels>         kernelsOfEights; ///< once they are needed
+    std::optional<ShellKernels>         kernelsOfShells; ///< the same
+    std::optional<MultigridShellSolver> shells; ///< of the last shell; none: there was none, or it was too large
+    Prepared                            loads, eights;
+    MemoryShortage                      shortage; ///< of memory for fields of all loads together, in numbers of one
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
         : context(settings), likeTheHost(isHost() || (bits == SoftwareBits::ofTheHost &&
@@ -153,6 +155,37 @@ struct PlateSolver::Multigrid {
           kernels(context, Schedule::automatic, Precision::best,
                   likeTheHost && !isHost() ? Smoother::chebyshev : Smoother::automatic)
     {
+    }
+
+    /// Returns why the host has to solve shells; empty: it need not, or this is the host.
+    [[nodiscard]] std::string whyNoShells() const
+    {
+        if (isHost()) return {};
+        if (likeTheHost) return context.processor().name + " gives the tables of shells other bits than the host does";
+        return ShellKernels::suit(context) ? "" : context.processor().name + " has no doubles, which shells need";
+    }
+
+    /// The solver is kept, because memory that is made anew for each patch costs as much as a set-up.
+    [[nodiscard]] FootprintSolution solve(const Shell& wanted, std::span<const Footprint> given, std::size_t whole,
+                                          double tolerance)
+    {
+        const bool isKept = wanted.bending.grid.nodes() <= kMostKeptNodes;
+        try {
+            if (shells) {
+                shells->setShell(wanted);
+            } else if (isHost()) {
+                shells.emplace(wanted);
+            } else {
+                if (!kernelsOfShells) kernelsOfShells.emplace(context);
+                shells.emplace(wanted, context, *kernelsOfShells);
+            }
+            FootprintSolution solution = byMultigridOfShells(*shells, wanted, given, whole, tolerance);
+            if (!isKept) shells.reset();
+            return solution;
+        } catch (...) {
+            shells.reset(); // half of it may be another shell's
+            throw;
+        }
     }
 
     [[nodiscard]] int memories() const { return loads.made + eights.made; }
@@ -530,23 +563,32 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     FootprintSolution solution;
-    if (processor_) {
-        // The solver is kept, because memory that is made anew for each patch costs as much as a set-up.
-        std::unique_ptr<MultigridShellSolver> solver = std::move(shells_);
-        if (solver)
-            solver->setShell(shell);
-        else
-            solver = std::make_unique<MultigridShellSolver>(shell);
-        solution = byHost(*solver, shell, loads, whole, tolerance);
-        if (shell.bending.grid.nodes() <= kMostKeptNodes) shells_ = std::move(solver);
-        if (!processor_->isHost()) note_ = name_ + " has no kernels for shells yet";
-    }
+    if (processor_) solution = byProcessor(shell, loads, whole, tolerance);
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
         if (processor_) note_ = stoppedAt(solution.whole.report);
         solution = byReference(shell, loads, whole, tolerance);
     }
     countTakeover(solution.whole.report.solver);
     return solution;
+}
+
+FootprintSolution PlateSolver::byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
+                                           double tolerance)
+{
+    if (std::string why = processor_->whyNoShells(); !why.empty()) {
+        note_ = std::move(why);
+        return host().solve(shell, loads, whole, tolerance);
+    }
+    try {
+        return processor_->solve(shell, loads, whole, tolerance);
+    } catch (const compute::ProcessorOutOfMemory& error) {
+        if (processor_->isHost()) throw;
+        note_ = error.what();
+    } catch (const compute::ProcessorLost& error) {
+        if (processor_->isHost()) throw;
+        loseProcessor(error);
+    }
+    return host().solve(shell, loads, whole, tolerance);
 }
 
 FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,

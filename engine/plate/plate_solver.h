@@ -15,8 +15,6 @@
 
 namespace palp {
 
-class MultigridShellSolver;
-
 namespace compute {
 struct ContextSettings;
 }
@@ -99,8 +97,8 @@ public:
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
 
-    /// Does the same for a shell; works hold its shear across the thickness too, see shearWork(). No GPU has kernels for
-    /// shells yet: the host solves them, and note() says so. On the reference solver every load is solved by the
+    /// Does the same for a shell; works hold its shear across the thickness too, see shearWork(). A processor
+    /// without doubles, or whose memory does not fit one, lets the host solve it, and note() says so. On the reference solver every load is solved by the
     /// reference solver of shells.
     [[nodiscard]] FootprintSolution solveFootprints(const Shell& shell, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance = 1e-4);
@@ -158,19 +156,20 @@ private:
     byReference(const Plate& plate, std::span<const NodeField> nodalForces, double tolerance);
     [[nodiscard]] static FootprintSolution byReference(const Plate& plate, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
+    [[nodiscard]] FootprintSolution byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
+                                                double tolerance);
     [[nodiscard]] static FootprintSolution byReference(const Shell& shell, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
 
-    SoftwareBits                          bits_;
-    std::unique_ptr<Multigrid>            processor_; ///< null: the reference solver is used
-    std::unique_ptr<Multigrid>            host_;   ///< what takes over where the processor cannot; null: not needed yet
-    std::unique_ptr<MultigridShellSolver> shells_; ///< of the last shell; null: none, or it was too large to be kept
-    std::unique_ptr<Learned> learned_; ///< from plates that could not be solved, or not where they should be
-    std::string              name_{kReference};
-    std::string              note_;
-    int                      takeovers_ = 0, attempts_ = 0, memoriesOfLost_ = 0;
-    std::string              counted_;             ///< reason of the takeover that was counted last
-    bool                     othersSolve_ = false; ///< the last plate was solved by another than the processor
+    SoftwareBits               bits_;
+    std::unique_ptr<Multigrid> processor_; ///< null: the reference solver is used
+    std::unique_ptr<Multigrid> host_;      ///< what takes over where the processor cannot; null: not needed yet
+    std::unique_ptr<Learned>   learned_;   ///< from plates that could not be solved, or not where they should be
+    std::string                name_{kReference};
+    std::string                note_;
+    int                        takeovers_ = 0, attempts_ = 0, memoriesOfLost_ = 0;
+    std::string                counted_;             ///< reason of the takeover that was counted last
+    bool                       othersSolve_ = false; ///< the last plate was solved by another than the processor
 };
 
 } // namespace palp

@@ -4,7 +4,8 @@
 #include "engine/plate/host/together.h"
 
 // The cycle and the gradients of shells: two fields, relaxed together. See
-// engine/plate/multigrid/multigrid_shell_solver.h. There are no shaders for it yet.
+// engine/plate/multigrid/multigrid_shell_solver.h. The shaders of shells (compute_shaders/shell_*.comp)
+// do the same in the same order.
 //
 // All arithmetic is in vectors of eight numbers, of eight nodes or of eight loads, in one order: the bits are the same
 // on every instruction set, though one load alone has other ones than among eight.
@@ -536,10 +537,18 @@ auto factorOf(const double* factors)
         return *factors;
 }
 
-template <bool kTogether>
-std::ptrdiff_t numbersOf(const HostDispatch& d)
+/// Calls visit(n) for all numbers of a vector by eights, and ofPart() behind each part of shell_layout.h: sums have one
+/// order on all processors.
+template <bool kTogether, class Visit, class OfPart>
+[[gnu::always_inline]] inline void eachPart(const HostDispatch& d, const Visit& visit, const OfPart& ofPart)
 {
-    return pushed<VectorSize>(d).numbers * loadsOf(kTogether);
+    const std::ptrdiff_t numbers = pushed<VectorSize>(d).numbers * loadsOf(kTogether),
+                         part    = std::ptrdiff_t(shared::shellPart(unsigned(numbers)));
+    for (std::ptrdiff_t first = 0; first < numbers; first += part) {
+        const std::ptrdiff_t end = first + part < numbers ? first + part : numbers;
+        for (std::ptrdiff_t n = first; n < end; n += kLanes) visit(n);
+        ofPart();
+    }
 }
 
 } // namespace
@@ -622,10 +631,14 @@ void dotsOf(const HostDispatch& d)
 {
     const A*         a = bound<const A>(d, 0);
     const B*         b = bound<const B>(d, 1);
-    Together<double> sums(0.0);
-    for (std::ptrdiff_t n = 0, numbers = numbersOf<kTogether>(d); n < numbers; n += kLanes)
-        sums += read<double>(a + n) * read<double>(b + n);
-    putSums<kTogether>(sums, bound<double>(d, 2));
+    Together<double> all(0.0), sums(0.0);
+    eachPart<kTogether>(
+        d, [&](std::ptrdiff_t n) { sums += read<double>(a + n) * read<double>(b + n); },
+        [&] {
+            all += sums;
+            sums = Together<double>(0.0);
+        });
+    putSums<kTogether>(all, bound<double>(d, 2));
 }
 
 // Buffers: x, r, p, q, b, factors; sums of b x and r x. x += factor p, r -= factor q.
@@ -635,19 +648,26 @@ void advanceOf(const HostDispatch& d)
     Real *           x = bound<Real>(d, 0), *r = bound<Real>(d, 1);
     const Real *     p = bound<const Real>(d, 2), *q = bound<const Real>(d, 3), *b = bound<const Real>(d, 4);
     const auto       by = factorOf<kTogether>(bound<const double>(d, 5));
-    Together<double> bx(0.0), rx(0.0);
-    for (std::ptrdiff_t n = 0, numbers = numbersOf<kTogether>(d); n < numbers; n += kLanes) {
-        const Together<Real> xNow(read<double>(x + n) + by * read<double>(p + n)),
-            rNow(read<double>(r + n) - by * read<double>(q + n));
-        store(x + n, xNow);
-        store(r + n, rNow);
-        const Together<double> exact(xNow);
-        bx += read<double>(b + n) * exact;
-        rx += Together<double>(rNow) * exact;
-    }
+    Together<double> bx(0.0), rx(0.0), allBx(0.0), allRx(0.0);
+    eachPart<kTogether>(
+        d,
+        [&](std::ptrdiff_t n) {
+            const Together<Real> xNow(read<double>(x + n) + by * read<double>(p + n)),
+                rNow(read<double>(r + n) - by * read<double>(q + n));
+            store(x + n, xNow);
+            store(r + n, rNow);
+            const Together<double> exact(xNow);
+            bx += read<double>(b + n) * exact;
+            rx += Together<double>(rNow) * exact;
+        },
+        [&] {
+            allBx += bx;
+            allRx += rx;
+            bx = rx = Together<double>(0.0);
+        });
     double* sums = bound<double>(d, 6);
-    putSums<kTogether>(bx, sums);
-    putSums<kTogether>(rx, sums + loadsOf(kTogether));
+    putSums<kTogether>(allBx, sums);
+    putSums<kTogether>(allRx, sums + loadsOf(kTogether));
 }
 
 // Buffers: z, p, factors. p := z + factor p.
@@ -657,8 +677,9 @@ void turnOf(const HostDispatch& d)
     const float* z  = bound<const float>(d, 0);
     Real*        p  = bound<Real>(d, 1);
     const auto   by = factorOf<kTogether>(bound<const double>(d, 2));
-    for (std::ptrdiff_t n = 0, numbers = numbersOf<kTogether>(d); n < numbers; n += kLanes)
-        store(p + n, Together<Real>(read<double>(z + n) + by * read<double>(p + n)));
+    eachPart<kTogether>(
+        d, [&](std::ptrdiff_t n) { store(p + n, Together<Real>(read<double>(z + n) + by * read<double>(p + n))); },
+        [] {});
 }
 
 } // namespace

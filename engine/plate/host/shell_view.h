@@ -2,58 +2,13 @@
 #include <cstddef>
 
 #include "compute_shaders/shared/plate_level.h"
+#include "compute_shaders/shared/shell_layout.h"
 
 namespace palp {
 
-/// The coefficients of a node of a shell's level, each a plane of numbers. A x is written in changes from the node,
-///
-///     (A w)(n) = sum over the twelve neighbours m of a(n, m) (w(m) - w(n)) + bed(n) w(n)
-///
-/// because a row without its bed adds up to nothing, also towards held nodes, whose value is 0: what rounding does to an
-/// entry is then relative to the slope and not to the deflection. An entry that two nodes share is kept at the first one.
-enum ShellPlane : int {
-    kBendEast, ///< of A, towards the next node along x; along z it is north
-    kBendNorth,
-    kBendEast2, ///< two nodes away
-    kBendNorth2,
-    kBendNorthEast,
-    kBendSouthEast,
-    kStressEast, ///< of C, as of A
-    kStressNorth,
-    kStressEast2,
-    kStressNorth2,
-    kStressNorthEast,
-    kStressSouthEast,
-    kCoupleEast, ///< of B, the row of w, towards each of eight neighbours
-    kCoupleWest,
-    kCoupleNorth,
-    kCoupleSouth,
-    kCoupleNorthEast,
-    kCoupleNorthWest,
-    kCoupleSouthEast,
-    kCoupleSouthWest,
-    kBed,       ///< what the foundation adds to the row of w
-    kColumnSum, ///< of B: what a deflection of 1 everywhere does to the row of phi
-    kInverseW,  ///< what relaxation multiplies the residuals of the node with: see compute_shaders/shared/shell_relax.h
-    kInverseWF,
-    kInverseF,
-    kShellPlanes
-};
-
-/// How nodes lie in memory: rows of x one after the other with two empty ones to either side, in a row the nodes with an
-/// even index along z before those with an odd one, and behind both at least one empty place up to a multiple of eight.
-/// Nodes of one colour are neighbours in memory, and no stencil has to look where it is.
-///
-///     fields        [row][w, phi][even, odd][span][load]
-///     coefficients  [row][plane][even, odd][span]
-struct ShellLayout {
-    int cellsX, cellsZ;
-    int span; ///< places of the nodes of a row with an even index
-
-    friend bool operator==(const ShellLayout&, const ShellLayout&) = default;
-};
-
-inline constexpr int kShellRim = 2; ///< empty rows before the first and behind the last
+using shared::kShellRim;
+using shared::ShellLayout;
+using enum shared::ShellPlane;
 
 /// One level's maps as the host's kernels see them, the last index along z fastest.
 struct ShellMaps {

@@ -9,6 +9,32 @@
 
 namespace palp {
 
+namespace compute {
+class Context;
+}
+
+/// The kernels of shells for one processor of Vulkan, compiled once.
+/// \thread one at a time, together with its context
+class ShellKernels {
+public:
+    /// Returns whether the processor can have them: it is one of Vulkan, has doubles, and its workgroups are large enough.
+    [[nodiscard]] static bool suit(const compute::Context& context) noexcept;
+
+    /// \pre suit(context)
+    /// \throws Error if they do not compile
+    explicit ShellKernels(compute::Context& context);
+    ~ShellKernels();
+    ShellKernels(ShellKernels&&) noexcept;
+    ShellKernels& operator=(ShellKernels&&) noexcept;
+
+    /// Returns the kernels, for the files of the plate.
+    struct All;
+    [[nodiscard]] const All& all() const noexcept { return *all_; }
+
+private:
+    std::unique_ptr<All> all_;
+};
+
 /// What a load does to a shell.
 struct ShellAnswer {
     NodeField   deflection{};     ///< w [m]
@@ -17,22 +43,25 @@ struct ShellAnswer {
     SolveReport report{}; ///< its estimate is that of the error's energy, the root of the work that is missing [1]
 };
 
-/// Solves thin shallow shells by multigrid on the host: conjugate gradients on both fields together, preconditioned by one
+/// Solves thin shallow shells by multigrid: conjugate gradients on both fields together, preconditioned by one
 /// symmetric V cycle whose relaxation changes both fields of a node at once.
 ///
-/// The cycle is in floats on assembled rows, conjugate gradients and their operator are in doubles; loads are taken by
-/// eights, whose fields are floats then. The matrix is indefinite, so that conjugate gradients minimise nothing; the
+/// The cycle is in floats on assembled rows, conjugate gradients and their operator are in doubles. The host takes loads by
+/// eights, whose fields are floats then; a processor of Vulkan takes them all at once, each with the bits that the host
+/// gives to one alone (on lavapipe; others may fuse). The host assembles rows and factors for both. The matrix is indefinite, so that conjugate gradients minimise nothing; the
 /// products of their formulas may be negative, and steps are as many as the plate takes, or two more (7 at most to 1e-4
 /// in the compliance, for discs of 100), however many cells there are and however curved it is. They start from nested
 /// iteration. The bits are the same on every instruction set. Beyond sharp contrasts of some thousands, such as of nodes
 /// that stand for nothing, they may not converge, and the report says so.
-/// Vulkan has no kernels for it yet.
 /// \thread one at a time
 /// \source Marguerre 1938; Brandt & Dinar 1979, collective relaxation; Hestenes & Stiefel 1952
 class MultigridShellSolver {
 public:
     /// \throws Error if whyUnsolvable(shell) says so
     explicit MultigridShellSolver(const Shell& shell);
+    /// Solves on a processor of Vulkan, which has to live longer, as its kernels.
+    /// \throws compute::ProcessorLost, also from solve() and setShell(); compute::ProcessorOutOfMemory from solve()
+    MultigridShellSolver(const Shell& shell, compute::Context& context, const ShellKernels& kernels);
     ~MultigridShellSolver();
     MultigridShellSolver(MultigridShellSolver&&) noexcept;
     MultigridShellSolver& operator=(MultigridShellSolver&&) noexcept;

@@ -125,7 +125,7 @@ std::ptrdiff_t placeIn(const ShellLayout& l, int i, int j, int field) noexcept
     return (std::ptrdiff_t(i + kShellRim) * 4 + field * 2 + j % 2) * l.span + j / 2;
 }
 
-double ShellLevel::exactAt(ShellPlane plane, int i, int j) const noexcept
+double ShellLevel::exactAt(int plane, int i, int j) const noexcept
 {
     const auto row = std::ptrdiff_t(i + kShellRim) * kShellPlanes + plane;
     return exact[std::size_t((row * 2 + j % 2) * layout.span + j / 2)];
@@ -231,7 +231,7 @@ void ShellCoarseSolver::collect(const ShellLevel& level)
                 if (!inside(e)) continue;
                 for (int field = 0; field < 2; ++field) { // a change between two nodes pulls at both
                     const double k = (field == 0 ? 1 : -1) *
-                                     level.exactAt(ShellPlane(e.plane + (field == 0 ? kBendEast : kStressEast)), i, j);
+                                     level.exactAt(e.plane + (field == 0 ? kBendEast : kStressEast), i, j);
                     add(i, j, field, i + e.di, j + e.dj, field, k);
                     add(i, j, field, i, j, field, -k);
                     add(i + e.di, j + e.dj, field, i + e.di, j + e.dj, field, -k);
@@ -239,7 +239,7 @@ void ShellCoarseSolver::collect(const ShellLevel& level)
             }
             for (const SharedEntry& e : kCoupled) {
                 if (!inside(e)) continue;
-                const double k = level.exactAt(ShellPlane(e.plane), i, j);
+                const double k = level.exactAt(e.plane, i, j);
                 add(i, j, 0, i + e.di, j + e.dj, 1, k);
                 add(i, j, 0, i, j, 1, -k);
             }

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "engine/plate/host/host_kernels.h"
@@ -26,8 +27,18 @@ struct ShellLevel {
     std::array<std::vector<float>, 4> tables;  ///< to the next coarser level: w along x, phi, w along z, phi
 
     /// Returns a coefficient in doubles.
-    [[nodiscard]] double exactAt(ShellPlane plane, int i, int j) const noexcept;
+    [[nodiscard]] double exactAt(int plane, int i, int j) const noexcept;
 };
+
+/// Calls visit(node, place of w) for the nodes whose deflection is unknown.
+template <class Visit>
+void eachUnknownNode(const ShellLevel& level, const Visit& visit)
+{
+    std::size_t node = 0;
+    for (int i = 0; i <= level.layout.cellsX; ++i)
+        for (int j = 0; j <= level.layout.cellsZ; ++j, ++node)
+            if (level.exactAt(kInverseW, i, j) != 0) visit(node, placeIn(level.layout, i, j, 0));
+}
 
 /// Makes all levels of a shell, the finest first, in the memory of those of another one. Rigidity and compliance are
 /// coarsened by geometric means, which makes one the inverse of the other on each level if it is on the finest;
@@ -40,6 +51,11 @@ class ShellCoarseSolver {
 public:
     /// Makes the factors; before, there is nothing to solve with.
     void factorise(const ShellLevel& level, const HostKernels& kernels);
+
+    /// Returns what the factors are of.
+    [[nodiscard]] std::span<const std::ptrdiff_t> places() const noexcept { return places_; }
+    [[nodiscard]] std::span<const double>         factors() const noexcept { return factors_; }
+    [[nodiscard]] int                             halfBand() const noexcept { return halfBand_; }
 
     /// Solves for one load, or eight: x := K^-1 b, with the kernels for as many.
     void solve(const HostKernels& kernels, const float* b, float* x) const;

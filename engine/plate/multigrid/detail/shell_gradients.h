@@ -1,0 +1,136 @@
+#pragma once
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "engine/core/contract.h"
+
+namespace palp {
+
+/// Conjugate gradients of one load.
+struct Gradients {
+    double rz = 0, work = 0;
+    double gain = 0, gainBefore = 0; ///< of the last two steps [of work]
+    int    steps = 0;
+    bool   done = false, converged = false;
+
+    /// Of the work that is missing, from the second step on: steps to come gain as much less as the last one did, but no
+    /// less than a tenth of it and 3 % of the step before, because a gain may be small by chance where the matrix is
+    /// indefinite. Of 100 shells each with linear, wart, disc and random maps, random curvatures and edges, at tolerances
+    /// of 1e-2, 1e-3 and 1e-4, 7 of the 1200 works miss their tolerance's square, six of them on random maps, by up to
+    /// five times.
+    [[nodiscard]] double estimate() const
+    {
+        constexpr double kBest = 0.1, kBestOfTwo = 0.03; // gains over those of one and two steps before [1]
+        if (work == 0) return 0;
+        if (steps < 2) return 1;
+        const double last = std::abs(gain), before = std::abs(gainBefore);
+        const double missing = std::max(last * std::clamp(last / before, kBest, 1.0), kBestOfTwo * before);
+        return std::sqrt(missing / std::abs(work));
+    }
+};
+
+/// Conjugate gradients of the loads of a shell, by vectors on any processor.
+/// \tparam Fields  as HostShellFields
+template <class Fields>
+class ShellGradients {
+public:
+    using PerLoad = typename Fields::PerLoad;
+    using States  = std::vector<Gradients>;
+
+    explicit ShellGradients(Fields& fields) : fields_(fields), restarted_(fields.none()), states_(restarted_.size()) {}
+
+    /// \return a state for each load
+    States solve(double tolerance, int mostSteps)
+    {
+        takeStart();
+        takeFirst();
+        for (int step = 0; step < mostSteps && !areDone(); ++step) {
+            advance(tolerance);
+            turn();
+        }
+        return states_;
+    }
+
+private:
+    static constexpr double kMostAlpha = 50, kLeastAlpha = 0.02; ///< beyond, a step is one of the cycle alone [1]
+    static constexpr double kCalmMost = 4, kCalmLeast = 0.25;    ///< beyond, a step tells nothing of the error [1]
+
+    [[nodiscard]] bool areDone() const { return std::ranges::all_of(states_, &Gradients::done); }
+
+    void takeStart()
+    {
+        const PerLoad works = fields_.takeStart();
+        for (std::size_t n = 0; n < states_.size(); ++n) states_[n].work = works[n];
+    }
+
+    void takeFirst()
+    {
+        const PerLoad rz = fields_.precondition();
+        fields_.takeDirection();
+        for (std::size_t n = 0; n < states_.size(); ++n) {
+            states_[n].rz   = rz[n];
+            states_[n].done = states_[n].converged = rz[n] == 0; // no load
+        }
+    }
+
+    /// Returns how far each load goes along p. Where that says nothing, p becomes what the cycle alone would do, and q what
+    /// belongs to it: the direction that gave such a number is not used at all.
+    PerLoad lengths()
+    {
+        const PerLoad pq     = fields_.useDirection();
+        PerLoad       alphas = fields_.none();
+        bool          anew   = false;
+        restarted_           = fields_.none();
+        for (std::size_t n = 0; n < states_.size(); ++n) {
+            if (states_[n].done) continue;
+            alphas[n]     = states_[n].rz / pq[n];
+            restarted_[n] = std::abs(alphas[n]) < kMostAlpha && std::abs(alphas[n]) > kLeastAlpha ? 0 : 1;
+            if (restarted_[n] == 0) continue;
+            anew      = true;
+            alphas[n] = 1;
+        }
+        if (anew) fields_.restart(restarted_);
+        return alphas;
+    }
+
+    /// Goes along p, and judges by what the work of the load has gained.
+    void advance(double tolerance)
+    {
+        const PerLoad alphas = lengths();
+        const PerLoad works  = fields_.go(alphas);
+        for (std::size_t n = 0; n < states_.size(); ++n)
+            if (!states_[n].done) judge(states_[n], alphas[n], works[n], restarted_[n] != 0, tolerance);
+    }
+
+    static void judge(Gradients& state, double alpha, double work, bool restarted, double tolerance)
+    {
+        state.gainBefore = state.gain;
+        state.gain       = restarted ? work - state.work : alpha * state.rz; // the same, but for rounding
+        state.work       = work;
+        ++state.steps;
+        const double size = std::abs(alpha);
+        const bool   calm = size > kCalmLeast && size < kCalmMost;
+        state.converged   = calm && state.estimate() < tolerance;
+        state.done        = state.converged || !std::isfinite(state.work);
+    }
+
+    /// Takes the next direction.
+    void turn()
+    {
+        if (areDone()) return;
+        const PerLoad rz    = fields_.precondition();
+        PerLoad       betas = fields_.none();
+        for (std::size_t n = 0; n < states_.size(); ++n) {
+            betas[n]      = restarted_[n] != 0 || states_[n].rz == 0 ? 0 : rz[n] / states_[n].rz;
+            states_[n].rz = rz[n];
+        }
+        fields_.turn(betas);
+    }
+
+    Fields& fields_;
+    PerLoad restarted_; ///< not 0: the last step was one of the cycle alone
+    States  states_;
+};
+
+} // namespace palp
