@@ -32,9 +32,9 @@ void main()
     int  i = nodeX(), j = nodeZ(l), atW = placeIn(l, i, j, 0), atF = placeIn(l, i, j, 1);
     bool moves = ((i + j + push.colour) & 1) == 0;
 #ifdef PALPATE_FIRST
-    float w = b[atW], f = b[atF], wBefore = 0.0f, fBefore = 0.0f;
+    precise float w = b[atW], f = b[atF], wBefore = 0.0f, fBefore = 0.0f;
 #else
-    float wBefore = x[atW], fBefore = x[atF], w = 0.0f, f = 0.0f;
+    precise float wBefore = x[atW], fBefore = x[atF], w = 0.0f, f = 0.0f;
     if (moves) {
         ShellRow row = shellRow(l, i, j);
         w            = b[atW] - row.w;
@@ -42,6 +42,7 @@ void main()
     }
 #endif
     float ww = inverseAt(kInverseW, i, j), wf = inverseAt(kInverseWF, i, j), ff = inverseAt(kInverseF, i, j);
-    after[atW] = moves ? wBefore + (ww * w + wf * f) : wBefore;
-    after[atF] = moves ? fBefore + (wf * w + ff * f) : fBefore;
+    precise float wAfter = wBefore + (ww * w + wf * f), fAfter = fBefore + (wf * w + ff * f);
+    after[atW] = moves ? wAfter : wBefore;
+    after[atF] = moves ? fAfter : fBefore;
 }

@@ -1,6 +1,7 @@
 // shell_rows.glsl - rows of a shell's matrix at this invocation's node, A w + B phi and B' w - C phi.
 //
-// The order of additions is that of engine/plate/host/shell_kernels.cpp: the bits are the same, and tests compare them.
+// The order of additions is that of engine/plate/host/shell_kernels.cpp, and `precise` keeps it: without, drivers
+// reorder sums of products. The bits are the same, and tests compare them.
 // The includer declares  entries,  the coefficients, and  x,  the fields, both of reals.
 
 struct ShellRow {
@@ -20,7 +21,7 @@ struct Changes {
 
 Changes changesOf(ShellLayout l, int field, int i, int j, real here)
 {
-    Changes c;
+    precise Changes c;
     c.east      = x[placeIn(l, i + 1, j, field)] - here;
     c.west      = x[placeIn(l, i - 1, j, field)] - here;
     c.north     = x[placeIn(l, i, j + 1, field)] - here;
@@ -35,7 +36,7 @@ Changes changesOf(ShellLayout l, int field, int i, int j, real here)
 // A of w, or with the planes of C, C of phi.
 real ownRow(ShellLayout l, int from, int field, int i, int j, real here, Changes c)
 {
-    real sum = entryAt(l, from + kBendEast, i, j) * c.east + entryAt(l, from + kBendEast, i - 1, j) * c.west;
+    precise real sum = entryAt(l, from + kBendEast, i, j) * c.east + entryAt(l, from + kBendEast, i - 1, j) * c.west;
     sum += entryAt(l, from + kBendNorth, i, j) * c.north + entryAt(l, from + kBendNorth, i, j - 1) * c.south;
     sum += entryAt(l, from + kBendNorthEast, i, j) * c.northEast + entryAt(l, from + kBendSouthEast, i - 1, j + 1) * c.northWest;
     sum += entryAt(l, from + kBendSouthEast, i, j) * c.southEast + entryAt(l, from + kBendNorthEast, i - 1, j - 1) * c.southWest;
@@ -48,7 +49,7 @@ real ownRow(ShellLayout l, int from, int field, int i, int j, real here, Changes
 
 ShellRow shellRow(ShellLayout l, int i, int j)
 {
-    ShellRow row;
+    precise ShellRow row;
     real     w = x[placeIn(l, i, j, 0)], f = x[placeIn(l, i, j, 1)];
     Changes  c = changesOf(l, 0, i, j, w);
     row.w      = ownRow(l, kBendEast, 0, i, j, w, c) + entryAt(l, kBed, i, j) * w;

@@ -1,0 +1,150 @@
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/compute/context.h"
+#include "engine/plate/footprint.h"
+#include "engine/plate/multigrid/multigrid_shell_solver.h"
+#include "engine/plate/plate_solver.h"
+#include "engine/plate/reference/reference_shell_solver.h"
+#include "tests/plate/shells.h"
+#include "tests/support/shader_fixture.h"
+
+// The shaders of shells against the host's kernels, to the bit where the processor rounds as C++ does, and against the
+// reference.
+
+namespace palp {
+namespace {
+
+/// A processor of Vulkan with doubles, and the kernels on it.
+class ShellOnProcessor : public ::testing::Test {
+protected:
+    void SetUp() override
+    {
+        context_.emplace(compute::ContextSettings{.processor = processorOfTests()});
+        if (context_->processor().kind == compute::ProcessorKind::host)
+            GTEST_SKIP() << "the host has kernels of its own";
+        if (!ShellKernels::suit(*context_)) GTEST_SKIP() << context_->processor().name << " has no doubles";
+        kernels_.emplace(*context_);
+    }
+
+    [[nodiscard]] std::vector<ShellAnswer> solved(const Shell& shell, std::span<const NodeField> loads,
+                                                  double tolerance = 1e-6)
+    {
+        return MultigridShellSolver(shell, *context_, *kernels_).solve(loads, tolerance);
+    }
+
+    /// Expects each load's answer to be that of the host for it alone.
+    void expectTheHosts(const std::vector<ShellAnswer>& found, const Shell& shell, std::span<const NodeField> loads,
+                        const std::string& where, double tolerance = 1e-6)
+    {
+        MultigridShellSolver host(shell);
+        for (std::size_t n = 0; n < loads.size(); ++n) {
+            const ShellAnswer alone = host.solve(loads.subspan(n, 1), tolerance).front();
+            EXPECT_EQ(found[n].report.iterations, alone.report.iterations) << where;
+            EXPECT_TRUE(found[n].report.converged) << where;
+            if (context_->bitExact()) {
+                EXPECT_EQ(found[n].work, alone.work) << where << ", load " << n;
+                EXPECT_EQ(found[n].deflection.values(), alone.deflection.values()) << where << ", load " << n;
+                EXPECT_EQ(found[n].stressFunction.values(), alone.stressFunction.values()) << where << ", load " << n;
+            } else { // fused products change roundings, and with them what is left of the error that was allowed
+                EXPECT_LT(largestDifference(found[n].deflection, alone.deflection), 10 * tolerance) << where;
+            }
+        }
+    }
+
+    std::optional<compute::Context> context_;
+    std::optional<ShellKernels>     kernels_;
+};
+
+TEST_F(ShellOnProcessor, HasTheBitsOfTheHostWhateverGridMapCurvatureAndEdges)
+{
+    using enum Edge;
+    const PlateGrid oblong{37, 22, kSize / 37, kSize / 22};
+    for (const auto& [bending, stress] : {std::pair{supported, supported}, std::pair{clamped, free},
+                                          std::pair{guided, supported}, std::pair{free, clamped}})
+        for (const auto& [grid, map, bend, lengths] : {std::tuple{square(32), even(), constant(1, 1, 0), 12.0},
+                                                       std::tuple{square(12), even(), constant(1, 0.2, 0), 4.0},
+                                                       std::tuple{square(64), wart(10), constant(0.7, 0.5, 0.35), 8.0},
+                                                       std::tuple{square(40), disc(100), ridges(), 16.0},
+                                                       std::tuple{oblong, linear(10), constant(1, -1, 0.2), 8.0}}) {
+            Shell shell              = shellOf(grid, map, bend, lengths, bending, stress);
+            shell.bending.foundation = 1e7; // holds what no side does
+            const NodeField load     = fingertip(grid, 3e-3, -2e-3);
+            const auto      where    = edgesText(allSides(bending)) + ", " + std::to_string(grid.cellsX) + " cells";
+            expectTheHosts(solved(shell, {&load, 1}), shell, {&load, 1}, where);
+        }
+}
+
+TEST_F(ShellOnProcessor, SolvesForSeveralLoadsTogether)
+{
+    const PlateGrid        grid  = square(32);
+    const Shell            shell = shellOf(grid, wart(10), constant(1, 0.5, 0.2), 8);
+    std::vector<NodeField> loads;
+    for (int n = 0; n < 5; ++n) loads.push_back(fingertip(grid, 2e-3 * (n - 2), 1e-3 * n));
+    loads.push_back(NodeField(grid)); // of nothing
+    const auto found = solved(shell, loads);
+    ASSERT_EQ(found.size(), loads.size());
+    EXPECT_EQ(found.back().work, 0);
+    expectTheHosts(found, shell, loads, "six loads");
+}
+
+TEST_F(ShellOnProcessor, GoesOnWithAnotherShellAndOtherEdges)
+{
+    using enum Edge;
+    const PlateGrid      grid = square(32);
+    const NodeField      load = fingertip(grid);
+    MultigridShellSolver solver(shellOf(grid, even(), constant(1, 1, 0), 8), *context_, *kernels_);
+    (void)solver.solve({&load, 1}, 1e-6);
+    for (const Shell& next :
+         {shellOf(grid, disc(10), ridges(), 8), shellOf(grid, linear(10), ridges(), 8, clamped, free),
+          shellOf(square(24), even(), constant(1, 1, 0), 8)}) {
+        const NodeField own = fingertip(next.bending.grid);
+        solver.setShell(next);
+        expectTheHosts(solver.solve({&own, 1}, 1e-6), next, {&own, 1}, edgesText(next.bending.edges));
+    }
+}
+
+TEST_F(ShellOnProcessor, IsTheReference)
+{
+    const PlateGrid grid  = square(40);
+    const Shell     shell = shellOf(grid, wart(100), ridges(), 12);
+    const NodeField load  = fingertip(grid, 2e-3, 0);
+    const auto      found = solved(shell, {&load, 1}, 1e-7).front();
+    const auto      exact = ReferenceShellSolver(shell).solve(load);
+    // As on the host: coefficients of the levels are floats, and the plate's condition makes some tens of 6e-8.
+    EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6);
+    EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6);
+}
+
+TEST_F(ShellOnProcessor, IsWhatAPlateSolverTakes)
+{
+    const Shell            shell = shellOf(square(32), wart(10), constant(1, 1, 0), 8);
+    std::vector<Footprint> loads;
+    for (int n = 0; n < 3; ++n) loads.emplace_back(fingertip(shell.bending.grid, 1e-3 * n));
+    PlateSolver             solver(processorOfTests()), host("host");
+    const FootprintSolution found = solver.solveFootprints(shell, loads, 1), by = host.solveFootprints(shell, loads, 1);
+    EXPECT_EQ(found.whole.report.solver, context_->processor().name);
+    EXPECT_EQ(solver.note(), "");
+    for (std::size_t n = 0; n < loads.size(); ++n)
+        EXPECT_NEAR(found.responses[n].work / by.responses[n].work, 1, 1e-4) << "the tolerance of works";
+}
+
+TEST(ShellsOfSmallProcessors, AreSolvedByTheHost)
+{
+    compute::ContextSettings settings{.processor = processorOfTests()};
+    settings.float64 = false;
+    PlateSolver     solver(settings);
+    const Shell     shell = shellOf(square(16), even(), constant(1, 1, 0), 8);
+    const Footprint load(fingertip(shell.bending.grid));
+    const auto      found = solver.solveFootprints(shell, {&load, 1}, 0);
+    EXPECT_EQ(found.whole.report.solver, "host");
+    EXPECT_TRUE(found.whole.report.converged);
+    if (compute::Context(settings).processor().kind != compute::ProcessorKind::host) {
+        EXPECT_NE(solver.note().find("has no doubles, which shells need"), std::string::npos) << solver.note();
+    }
+}
+
+} // namespace
+} // namespace palp
