@@ -23,9 +23,9 @@ class Program:
 
 
 class Bench:
-    def __init__(self, root: Path, build: Path):
+    def __init__(self, root: Path, build: Path, part: int):
         self.root, self.build = root, build
-        self.work = build / "mutants"
+        self.work = build / "mutants" / str(part)  # benches beside each other have folders of their own
         self.copies = self.work / "src"
         self.copies.mkdir(parents=True, exist_ok=True)
         listed = subprocess.run(["ninja", "-t", "compdb"], cwd=build, capture_output=True, text=True, check=True).stdout
