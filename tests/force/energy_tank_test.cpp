@@ -405,5 +405,23 @@ TEST(EnergyTank, AShapeThatRisesUnderALoadedFingerIsPaidFor)
     EXPECT_EQ(tank.step(soft).law.shape, DepthShape{});
 }
 
+/// From a dome that has given way to a spring that is softer at the surface and harder where the hand is: the rise waits,
+/// and the lower cap, which the loop asks for, holds at once.
+TEST(EnergyTank, ALawOnItsWayIsWithinTheLowerCap)
+{
+    EnergyTank tank({.limit = 2e-3, .start = 0.01e-3, .damping = 0, .power = 0});
+    DepthShape dome{.step = 0.02e-3};
+    dome.tangents.fill(0.05);
+    dome.tangents[0] = 1;
+    EnergyTankInput in{.stiffness = 1000, .depth = 0, .dt = 1e-3, .shape = dome};
+    tank.step(in);
+    in                         = {.stiffness = 300, .depth = 2e-3, .dt = 1e-3, .steepest = 300};
+    const EnergyTankOutput out = tank.step(in);
+    ASSERT_LT(out.law.energy(2e-3), DepthLaw::capped(300, 0, 300).energy(2e-3)) << "or all was paid for";
+    EXPECT_EQ(out.law.steepest, 300);
+    EXPECT_LE(out.law.stiffness, 300);
+    EXPECT_LE(out.law.mostTangent(2e-3), 300);
+}
+
 } // namespace
 } // namespace palp
