@@ -66,12 +66,12 @@ TEST(FalconCodec, CommandsAreTheBytesThatTheVendorsDriverSends)
 
 TEST(FalconCodec, ASilencedCommandIsTheSameWithoutItsForce)
 {
-    FalconPacket packet = encode({{661, 0, 0}, true, kBlue});
+    FalconPacket packet = encode(FalconCommand{{661, 0, 0}, true, kBlue});
     EXPECT_TRUE(kFalconZero.pushes(packet));
     kFalconZero.silence(packet);
     EXPECT_FALSE(kFalconZero.pushes(packet));
-    EXPECT_EQ(packet, encode({{}, true, kBlue})) << "the light stays";
-    EXPECT_FALSE(kFalconZero.pushes(encode({{}, true, kRed})));
+    EXPECT_EQ(packet, encode(FalconCommand{{}, true, kBlue})) << "the light stays";
+    EXPECT_FALSE(kFalconZero.pushes(encode(FalconCommand{{}, true, kRed})));
 
     // What is no command, as firmware that is uploaded, is left alone: another start, end or length.
     for (const char* text : {"?FJCALNCAOPCAEA>", "<FJCALNCAOPCAEA?", "<FJCALNCAOPCAE>", "<FJCALNCAOPCAEAA>"}) {
