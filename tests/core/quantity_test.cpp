@@ -113,6 +113,12 @@ TEST(Quantity, APlainNumberIsInTheUnitThatTheCallerNames)
     EXPECT_DOUBLE_EQ(parseQuantity("3cm", Dimension::length, "--thickness", 1e-3), 3e-2);
 }
 
+TEST(FormatNumber, HasTwoDigitsAndAnExponent)
+{
+    EXPECT_EQ(formatNumber(12345), "1.2e+04");
+    EXPECT_EQ(formatNumber(-0.001), "-1.0e-03");
+}
+
 TEST(ShortNumber, HasNoMoreDigitsThanItNeeds)
 {
     EXPECT_EQ(shortNumber(0.25), "0.25");

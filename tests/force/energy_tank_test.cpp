@@ -112,6 +112,15 @@ TEST(EnergyTank, AFallThatPushedTheHandAlongIsNotGivenTwice)
     EXPECT_NEAR(out.used, 49e-6, 1e-15) << "the tank pays for it";
 }
 
+TEST(EnergyTank, AContactWithoutStiffnessLeavesItAsItIs)
+{
+    EnergyTank   tank(withoutIncome());
+    const double had = tank.energy();
+    EXPECT_EQ(tank.step(at(0, 2e-3)).stiffness, 0);
+    EXPECT_EQ(tank.energy(), had);
+    EXPECT_GT(had, 0);
+}
+
 TEST(EnergyTank, IncomeStopsAtTheLimit)
 {
     EnergyTank tank;
