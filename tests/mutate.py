@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Do the tests bite? Changes one thing of a source at a time and looks whether its tests notice.
 
-usage: python3 tests/mutate.py [--minutes N] [--file TEXT]... [--survivors | --report]
+usage: python3 tests/mutate.py [--minutes N] [--file TEXT]... [--part I/N] [--survivors | --report]
 
   --minutes N    stop after this time (10); what was judged is kept in BUILD/mutants/results.tsv and not judged again
   --file TEXT    only sources whose path contains TEXT; tests/mutation/targets.txt lists all
+  --part I/N     every N-th source from the I-th on, such as 1/2 and 2/2 in two terminals, for two cores
   --survivors    judge those anew that survived, after the tests have been improved
   --report       judge nothing, print the table only
 
@@ -113,6 +114,7 @@ def main():
     options = argparse.ArgumentParser(add_help=False)
     options.add_argument("--minutes", type=float, default=10)
     options.add_argument("--file", action="append", default=[])
+    options.add_argument("--part", default="1/1", type=lambda word: tuple(map(int, word.split("/"))))
     options.add_argument("--survivors", action="store_true")
     options.add_argument("--report", action="store_true")
     options.add_argument("--help", "-h", action="store_true")
@@ -126,8 +128,9 @@ def main():
     if not chosen.report:
         if not (build / "build.ninja").exists():
             raise SystemExit(f"{build} holds no build.ninja: build Palpate with its tests by ninja first, see --help")
-        bench, end = Bench(ROOT, build), time.monotonic() + 60 * chosen.minutes
-        for source, programs, key, mutant in turns(results, wanted, chosen.survivors):
+        part, parts = chosen.part
+        bench, end = Bench(ROOT, build, part), time.monotonic() + 60 * chosen.minutes
+        for source, programs, key, mutant in turns(results, wanted[part - 1 :: parts], chosen.survivors):
             if time.monotonic() > end:
                 break
             results[key] = bench.judge(source, applied((ROOT / source).read_text(), mutant), programs)

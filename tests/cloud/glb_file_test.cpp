@@ -218,6 +218,10 @@ TEST(GlbFile, ARefusalNamesThePlaceAndWhatWasExpected)
         EXPECT_TRUE(contains(refusal(with(before, after)), {"test: in its JSON, ", said})) << before << " -> " << after;
     const std::string whole = glb(kSquare, squareBytes());
     EXPECT_TRUE(contains(refusalOf(whole.substr(0, whole.size() - 4), CloudFormat::glb), {"test: byte 8", "promises"}));
+    std::string claims = whole; // 257 bytes of JSON more than there is of everything
+    claims[13]         = char(claims[13] + 1 + int(whole.size() / 256));
+    EXPECT_TRUE(contains(refusalOf(claims, CloudFormat::glb),
+                         {"test: byte 12: expected at most " + std::to_string(whole.size() - 20) + " bytes of JSON"}));
     EXPECT_TRUE(contains(refusalOf("ply\nand more", CloudFormat::glb), {"test: byte 0: expected a binary glTF file"}));
     EXPECT_TRUE(contains(refusalOf("gl", CloudFormat::glb), {"test: byte 0"}));
     EXPECT_TRUE(contains(refusal("{]"), {"test: byte 20: expected JSON"}));

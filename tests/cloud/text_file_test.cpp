@@ -36,6 +36,23 @@ TEST(TextFile, BlanksBeforeACommentOrAHeaderDoNotCount)
     EXPECT_EQ(text("  x,y,z,stiffness  \n1,2,3,70\n4,5,6,80\n").cloud.stiffness()[0], 70);
 }
 
+TEST(TextFile, OtherPropertiesAreFoundByTheirNameUnlessTheyAreTheStiffness)
+{
+    const std::string bytes = "x,y,z,foundation,stiffness,stiffening,held\n1,2,3,70,8e4,300,0\n4,5,6,90,9e4,400,1\n";
+    const LoadedCloud found = text(bytes);
+    EXPECT_EQ(found.cloud.stiffness()[1], 9e4);
+    EXPECT_EQ(found.foundation, (std::vector<double>{70, 90}));
+    EXPECT_EQ(found.stiffening, (std::vector<double>{300, 400}));
+    EXPECT_EQ(found.held, (std::vector<double>{0, 1}));
+
+    CloudReadSettings chosen;
+    chosen.stiffnessProperty = "foundation";
+    const LoadedCloud other  = text(bytes, chosen);
+    EXPECT_EQ(other.cloud.stiffness()[1], 90);
+    EXPECT_TRUE(other.foundation.empty());
+    EXPECT_EQ(other.stiffening.size(), 2U);
+}
+
 TEST(TextFile, TheLargestCoordinateIsStillACoordinate)
 {
     EXPECT_EQ(text("0 0 0\n1e9 1e9 1e9\n").cloud.positions()[1], glm::dvec3(1e9));

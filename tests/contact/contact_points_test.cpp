@@ -1,6 +1,8 @@
 // The points that a proxy touches. Lengths are in spacings.
 #include "engine/contact/detail/contact_points.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "tests/contact/proxy_scenes.h"
@@ -27,6 +29,7 @@ TEST(ContactPoints, PointsOfAGoodScanStayAsTheyAre)
     const ContactPoints touched(object);
 
     EXPECT_EQ(touched.positions().data(), object.positions().data()) << "clean points are the object's own";
+    for (const PointMark& mark : touched.marks()) EXPECT_EQ(mark.smoothed, 0);
 }
 
 TEST(ContactPoints, NoisyPointsAreSmoothed)
@@ -39,6 +42,10 @@ TEST(ContactPoints, NoisyPointsAreSmoothed)
     const ContactPoints touched(object);
 
     EXPECT_LT(touched.positions().size(), points.size() / 4) << "one for each square of a touch scale of 3.3 spacings";
+    ASSERT_EQ(touched.marks().size(), touched.positions().size());
+    const auto smoothed = std::ranges::count_if(touched.marks(), [](const PointMark& mark) { return mark.smoothed; });
+    EXPECT_GT(smoothed, std::ptrdiff_t(touched.marks().size()) * 9 / 10)
+        << "they have little noise, and planes know it";
 }
 
 } // namespace

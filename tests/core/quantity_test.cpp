@@ -1,5 +1,7 @@
 #include "engine/core/quantity.h"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
@@ -18,6 +20,49 @@ TEST(Quantity, UnitsScaleToSi)
          {std::pair("800/m", 800.0), {"800 1/m", 800.0}, {"0.8 /mm", 800.0}, {"0.8 1/mm", 800.0}})
         EXPECT_DOUBLE_EQ(parseQuantity(text, Dimension::perLength, "x"), value) << text;
     EXPECT_DOUBLE_EQ(metresPer("in"), 0.0254);
+}
+
+TEST(Quantity, EveryUnitIsThatManySiUnits)
+{
+    using enum Dimension;
+    struct Case {
+        Dimension   dimension;
+        const char* unit;
+        double      inSi;
+    };
+    for (const auto& [dimension, unit, inSi] : {Case{length, "m", 1},
+                                                {length, "mm", 1e-3},
+                                                {length, "cm", 1e-2},
+                                                {length, "um", 1e-6},
+                                                {length, "km", 1e3},
+                                                {length, "in", 0.0254},
+                                                {length, "ft", 0.3048},
+                                                {force, "N", 1},
+                                                {force, "mN", 1e-3},
+                                                {force, "kN", 1e3},
+                                                {pressure, "Pa", 1},
+                                                {pressure, "kPa", 1e3},
+                                                {pressure, "MPa", 1e6},
+                                                {pressure, "GPa", 1e9},
+                                                {rigidity, "N_m", 1},
+                                                {rigidity, "Nm", 1},
+                                                {rigidity, "N*m", 1},
+                                                {rigidity, "mN_m", 1e-3},
+                                                {rigidity, "mNm", 1e-3},
+                                                {foundation, "Pa/m", 1},
+                                                {foundation, "kPa/m", 1e3},
+                                                {foundation, "MPa/m", 1e6},
+                                                {foundation, "GPa/m", 1e9},
+                                                {stiffness, "N/m", 1},
+                                                {stiffness, "kN/m", 1e3},
+                                                {stiffness, "N/mm", 1e3},
+                                                {stiffness, "N/cm", 1e2},
+                                                {angle, "rad", 1},
+                                                {angle, "deg", 3.14159265358979 / 180},
+                                                {time, "s", 1},
+                                                {time, "ms", 1e-3},
+                                                {perLength, "/mm", 1e3}})
+        EXPECT_NEAR(parseQuantity(std::string("3 ") + unit, dimension, "x") / (3 * inSi), 1, 1e-12) << unit;
 }
 
 TEST(Quantity, AnythingElseIsRefusedWithTheKnownUnits)
@@ -66,6 +111,12 @@ TEST(Quantity, APlainNumberIsInTheUnitThatTheCallerNames)
 {
     EXPECT_DOUBLE_EQ(parseQuantity("3", Dimension::length, "--thickness", 1e-3), 3e-3);
     EXPECT_DOUBLE_EQ(parseQuantity("3cm", Dimension::length, "--thickness", 1e-3), 3e-2);
+}
+
+TEST(FormatNumber, HasTwoDigitsAndAnExponent)
+{
+    EXPECT_EQ(formatNumber(12345), "1.2e+04");
+    EXPECT_EQ(formatNumber(-0.001), "-1.0e-03");
 }
 
 TEST(ShortNumber, HasNoMoreDigitsThanItNeeds)

@@ -64,6 +64,24 @@ TEST(FalconCodec, CommandsAreTheBytesThatTheVendorsDriverSends)
     }
 }
 
+TEST(FalconCodec, ASilencedCommandIsTheSameWithoutItsForce)
+{
+    FalconPacket packet = encode(FalconCommand{{661, 0, 0}, true, kBlue});
+    EXPECT_TRUE(kFalconZero.pushes(packet));
+    kFalconZero.silence(packet);
+    EXPECT_FALSE(kFalconZero.pushes(packet));
+    EXPECT_EQ(packet, encode(FalconCommand{{}, true, kBlue})) << "the light stays";
+    EXPECT_FALSE(kFalconZero.pushes(encode(FalconCommand{{}, true, kRed})));
+
+    // What is no command, as firmware that is uploaded, is left alone: another start, end or length.
+    for (const char* text : {"?FJCALNCAOPCAEA>", "<FJCALNCAOPCAEA?", "<FJCALNCAOPCAE>", "<FJCALNCAOPCAEAA>"}) {
+        std::vector<std::uint8_t> bytes = bytesOf(text);
+        EXPECT_FALSE(kFalconZero.pushes(bytes)) << text;
+        kFalconZero.silence(bytes);
+        EXPECT_EQ(bytes, bytesOf(text));
+    }
+}
+
 TEST(FalconCodec, RepliesAreReadAsTheDeviceMeansThem)
 {
     const std::vector<std::uint8_t> first{0x3C, 0x4D, 0x50, 0x4E, 0x50, 0x4D, 0x50, 0x4E,

@@ -35,6 +35,14 @@ TEST(RecentMotion, TakesASlowClockAndLeavesOutATimeThatDoesNotAdvance)
     EXPECT_NEAR(motion.velocity().x, 0.1, 1e-12);
 }
 
+TEST(RecentMotion, TwoPlacesAtOneTimeAreNoVelocity)
+{
+    RecentMotion motion;
+    motion.add(1, {});
+    motion.add(1, {5e-3, 0, 0});
+    EXPECT_EQ(motion.velocity(), glm::dvec3(0));
+}
+
 TEST(Ahead, IsALeadAheadForTheTableAndTheContactForTheOtherLaws)
 {
     const glm::dvec3 ahead = aheadOf(ComplianceLaw::table, {1, 2, 3}, {0.2, 0, -0.1}, 0.02);

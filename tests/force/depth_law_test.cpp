@@ -33,6 +33,9 @@ TEST(DepthLaw, IsTheExponentialUpToTheCapAndStraightBeyond)
     EXPECT_NEAR(law.force(bend), 800 / kMeat, 1e-12);
     EXPECT_NEAR(law.force(bend + 3e-3), 800 / kMeat + 3, 1e-12) << "1000 N/m over 3 mm";
     EXPECT_EQ(law.tangent(bend + 3e-3), 1000);
+    for (const double depth : {1e-3, bend, bend + 3e-3})
+        EXPECT_NEAR(law.secant(depth) * depth, law.force(depth), 1e-12) << "what a hand is pulled by, over its depth";
+    EXPECT_EQ(law.secant(0), 200);
     EXPECT_TRUE(std::isfinite(law.energy(100))) << "no exponential of what lies beyond the cap";
 }
 

@@ -112,6 +112,15 @@ TEST(EnergyTank, AFallThatPushedTheHandAlongIsNotGivenTwice)
     EXPECT_NEAR(out.used, 49e-6, 1e-15) << "the tank pays for it";
 }
 
+TEST(EnergyTank, AContactWithoutStiffnessLeavesItAsItIs)
+{
+    EnergyTank   tank(withoutIncome());
+    const double had = tank.energy();
+    EXPECT_EQ(tank.step(at(0, 2e-3)).stiffness, 0);
+    EXPECT_EQ(tank.energy(), had);
+    EXPECT_GT(had, 0);
+}
+
 TEST(EnergyTank, IncomeStopsAtTheLimit)
 {
     EnergyTank tank;
@@ -403,6 +412,24 @@ TEST(EnergyTank, AShapeThatRisesUnderALoadedFingerIsPaidFor)
     EXPECT_LE(out.used, 0.01e-3);
     EXPECT_GT(out.stored, before); // as far as the tank pays
     EXPECT_EQ(tank.step(soft).law.shape, DepthShape{});
+}
+
+/// From a dome that has given way to a spring that is softer at the surface and harder where the hand is: the rise waits,
+/// and the lower cap, which the loop asks for, holds at once.
+TEST(EnergyTank, ALawOnItsWayIsWithinTheLowerCap)
+{
+    EnergyTank tank({.limit = 2e-3, .start = 0.01e-3, .damping = 0, .power = 0});
+    DepthShape dome{.step = 0.02e-3};
+    dome.tangents.fill(0.05);
+    dome.tangents[0] = 1;
+    EnergyTankInput in{.stiffness = 1000, .depth = 0, .dt = 1e-3, .shape = dome};
+    tank.step(in);
+    in                         = {.stiffness = 300, .depth = 2e-3, .dt = 1e-3, .steepest = 300};
+    const EnergyTankOutput out = tank.step(in);
+    ASSERT_LT(out.law.energy(2e-3), DepthLaw::capped(300, 0, 300).energy(2e-3)) << "or all was paid for";
+    EXPECT_EQ(out.law.steepest, 300);
+    EXPECT_LE(out.law.stiffness, 300);
+    EXPECT_LE(out.law.mostTangent(2e-3), 300);
 }
 
 } // namespace

@@ -6,6 +6,7 @@ import os
 import re
 import resource
 import shlex
+import shutil
 import subprocess
 import time
 from pathlib import Path
@@ -19,18 +20,17 @@ class Program:
     def __init__(self, word: str, own: bool):
         self.name, _, self.filter = word.partition(":")
         self.own = own  # only the program's own sources are compiled with a mutated header
-        self.limit = None  # [s]
 
 
 class Bench:
-    def __init__(self, root: Path, build: Path):
+    def __init__(self, root: Path, build: Path, part: int):
         self.root, self.build = root, build
-        self.work = build / "mutants"
+        self.work = build / "mutants" / str(part)  # benches beside each other have folders of their own
         self.copies = self.work / "src"
         self.copies.mkdir(parents=True, exist_ok=True)
         listed = subprocess.run(["ninja", "-t", "compdb"], cwd=build, capture_output=True, text=True, check=True).stdout
         self.compile = {e["output"]: e for e in json.loads(listed) if e["output"].endswith(".o")}
-        self.links, self.dependants, self.originals = {}, {}, {}
+        self.links, self.dependants, self.originals, self.limits = {}, {}, {}, {}
 
     def link_of(self, program: str) -> str:
         """Returns the command that links a program, without what the build does after it."""
@@ -71,10 +71,10 @@ class Bench:
         command = entry["command"].replace(f"-c {self.root / source}", f"-c {copy}")
         command = re.sub(r"-o \S+ -c", f"-o {out} -w -iquote {self.copies} -c", command)
         command = re.sub(r"-MF \S+", f"-MF {self.work / 'mutant.d'}", command)
-        # A precompiled header may hold the source's old text, and a cache would only grow.
-        command = re.sub(r"-Winvalid-pch |-include \S*cmake_pch\S* ", "", command)
-        environment = dict(os.environ, CCACHE_DISABLE="1")
-        done = subprocess.run(command, shell=True, cwd=self.build, capture_output=True, text=True, env=environment)
+        command = command.split("ccache ")[-1].replace(" -O3 ", " -O1 ")  # a cache would only grow; quick to compile
+        if source.endswith(".h"):  # its old text may be in the precompiled header
+            command = re.sub(r"-Winvalid-pch |-include \S*cmake_pch\S* ", "", command)
+        done = subprocess.run(command, shell=True, cwd=self.build, capture_output=True, text=True)
         self.errors = done.stderr
         copy.unlink()
         return out.read_bytes() if done.returncode == 0 else None
@@ -96,7 +96,7 @@ class Bench:
                 command = command.replace(f" {obj} ", f" {path} ")
             else:
                 first.append(str(path))  # its symbols come before those of the same member of a library
-        command = command.replace(f" -o bin/{program.name} ", f" {' '.join(first)} -o {out} ")
+        command = command.replace(f" -o bin/{program.name} ", f" {' '.join(first)} -o {out} " + ("-fuse-ld=lld " if shutil.which("ld.lld") else ""))
         subprocess.run(command, shell=True, cwd=self.build, check=True, capture_output=True)
         return out
 
@@ -117,13 +117,17 @@ class Bench:
         failed = re.search(r"\[  FAILED  \] (\S+)", out)
         return failed.group(1).rstrip(",") if failed else f"crash, status {child.returncode}"
 
-    def prepare(self, program: Program) -> None:
-        """Runs the program as it is: it must pass, and a mutant may take ten times as long."""
+    def limit_of(self, program: Program) -> float:
+        """Runs the program once as it is: it must pass, and a mutant may take ten times as long [s]."""
+        key = (program.name, program.filter)
+        if key in self.limits:
+            return self.limits[key]
         began = time.monotonic()
         verdict = self.run(self.build / "bin" / program.name, program, 600)
         if verdict != "passed":
             raise SystemExit(f"{program.name} does not pass without a mutant: {verdict}")
-        program.limit = 10 * (time.monotonic() - began) + 10
+        self.limits[key] = 10 * (time.monotonic() - began) + 10
+        return self.limits[key]
 
     def judge(self, source: str, text: str, programs: list[Program]) -> tuple[str, str]:
         """Returns a verdict and its reason: killed, timeout, survived, same (equal machine code) or invalid."""
@@ -139,9 +143,8 @@ class Bench:
             if not objects:
                 continue
             changed = True
-            if program.limit is None:
-                self.prepare(program)
-            ended = self.run(self.linked(program, objects), program, program.limit)
+            limit = self.limit_of(program)
+            ended = self.run(self.linked(program, objects), program, limit)
             if ended == "timeout":
                 return "timeout", program.name
             if ended != "passed":
