@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/extremes.h"
-#include "engine/pipeline/detail/touched_surface.h"
 #include "engine/pipeline/detail/whole_object.h"
 
 namespace palp {
@@ -36,27 +34,24 @@ double meanOfSquares(const NodeField& field)
     return sum / double(field.values().size());
 }
 
-/// Fits the curvature, to a piece of surface that is larger than the window by the radius of the largest fit.
-std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject& object, const PatchSettings& settings)
+/// Returns the noise of the points [m], the root of its mean square: one that changes little as points come and go.
+double noiseOf(const SoftObject& object, const LaidPoints& points)
 {
-    const double         most = settings.window / 2;
-    const Ball           ball = ballOf(object, patch.contact.point, std::numbers::sqrt2 * settings.window / 2 + most);
-    const TouchedSurface surface = touchedSurface(object, patch.contact, ball);
-    const double         side    = glm::dot(surface.normal, patch.chart.frame.normal) < 0 ? -1 : 1;
-    std::vector<glm::dvec3> around, normals;
-    for (std::size_t k = 0; k < surface.size(); ++k) {
-        around.push_back(surface.place(k));
-        normals.push_back(side * surface.normalAt(k));
-    }
+    double sum = 0;
+    for (const std::uint32_t rank : points.ranks)
+        sum += object.survey().noiseOfRank(rank) * object.survey().noiseOfRank(rank);
+    return std::sqrt(sum / double(std::max<std::size_t>(1, points.ranks.size())));
+}
 
-    std::vector<glm::dvec3> places;
-    places.reserve(patch.touched);
-    for (std::size_t k = 0; k < patch.touched; ++k) places.push_back(object.positions()[patch.points[k]]);
-    return curvatureField(patch.window, patch.chart.frame, places, std::span(patch.positions).first(patch.touched),
-                          {around, normals},
+/// Finds how the touched surface is curved.
+std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject& object, const LaidPoints& points,
+                                            const PatchSettings& settings)
+{
+    return curvatureField(patch.window, patch.chart.frame,
+                          [&](int rung) { return curvatureSites(object, points, rung); },
                           {.spacing    = patch.spacing,
-                           .noise      = surface.noise,
-                           .mostRadius = most,
+                           .noise      = noiseOf(object, points),
+                           .mostRadius = settings.window / 2,
                            .lengthRoot = lengthRoot(object.material())});
 }
 
@@ -123,7 +118,7 @@ Shell homogeneousOf(const Shell& shell)
     return mean;
 }
 
-void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings)
 {
     if (settings.large == Large::on || settings.theory == Theory::shell) fillMembrane(patch, object.material());
     if (settings.theory == Theory::plate) return;
@@ -131,7 +126,7 @@ void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& set
     if (settings.neighbourhood == Neighbourhood::ball)
         return stayFlat("the points of a ball are no surface with a curvature; set neighbourhood surface");
     if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
-    patch.curvature = findCurvature(patch, object, settings);
+    patch.curvature = findCurvature(patch, object, points, settings);
     if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
 
     const Material& material = object.material();

@@ -1,0 +1,24 @@
+#pragma once
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "engine/chart/curvature_field.h"
+#include "engine/cloud/soft_object.h"
+
+namespace palp {
+
+/// The points of a touched surface that have a place in the chart.
+struct LaidPoints {
+    std::span<const std::uint32_t> ranks;     ///< along the curve of the object's index
+    std::span<const ChartPoint>    positions; ///< [m] as many
+    std::span<const glm::dvec3>    normals;   ///< [1] as many, towards the finger
+};
+
+/// Returns the fits of one radius of the ladder at those sites of the object that are among the points. What is not known
+/// from earlier touches is fitted, and kept with the object.
+/// \param rung  see rungRadius()
+/// \thread any; starts threads
+[[nodiscard]] std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung);
+
+} // namespace palp
