@@ -288,6 +288,26 @@ TEST(ShellPatch, SaysWhyItStaysFlat)
     EXPECT_TRUE(warned(touchOf(odd, {0, 0, 50e-3}), kShell, "Poisson's ratio"));
 }
 
+TEST(ShellPatch, ALensIsNoShellAndASheetWithTwoFacesIs)
+{
+    std::mt19937                           random(3);
+    std::uniform_real_distribution<double> along(-25e-3, 25e-3);
+    const auto                             twoFaces = [&](double below) { // sheets of 1 mm in the middle
+        std::vector<glm::dvec3> points;
+        for (int n = 0; n < 5000; ++n) {
+                                        const double x = along(random), y = along(random), sag = 10 * (x * x + y * y);
+                                        points.emplace_back(x, y, n % 2 ? -sag : -1e-3 + below * sag);
+        }
+        return objectOf(std::move(points));
+    };
+    PatchSettings small = kShell;
+    small.window        = 20e-3;
+    const Patch lens = touchOf(twoFaces(1), {}, small), dome = touchOf(twoFaces(-1), {}, small);
+    EXPECT_FALSE(lens.curvature);
+    EXPECT_TRUE(warned(lens, small, "whose two faces bulge"));
+    EXPECT_TRUE(dome.curvature) << dome.flatBecause;
+}
+
 TEST(ShellPatch, EverySideOfTheMembraneIsHeldAsItsOwnSideOfTheWindow)
 {
     using enum Edge;

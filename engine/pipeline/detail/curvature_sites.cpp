@@ -58,14 +58,14 @@ CurvatureNotes::Level levelOf(const SoftObject& object, double radius)
     return level;
 }
 
-/// Fits about one point of the object, on the face that it is on.
-std::optional<LocalCurvature> fitAbout(const SoftObject& object, std::uint32_t rank, double radius)
+} // namespace
+
+std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
+                                            const glm::dvec3& outward, double radius)
 {
-    const glm::dvec3 place = object.index().positionsByRank()[rank];
     try {
-        const Ball           ball = ballOf(object, place, std::numbers::sqrt2 * radius);
-        const TouchedSurface surface =
-            touchedSurface(object, {.point = place, .outward = object.survey().normalOfRank(rank)}, ball);
+        const Ball              ball    = ballOf(object, place, std::numbers::sqrt2 * radius);
+        const TouchedSurface    surface = touchedSurface(object, {.point = place, .outward = outward}, ball);
         std::vector<glm::dvec3> around, normals;
         around.reserve(surface.size());
         normals.reserve(surface.size());
@@ -78,8 +78,6 @@ std::optional<LocalCurvature> fitAbout(const SoftObject& object, std::uint32_t r
         return {};
     }
 }
-
-} // namespace
 
 std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung)
 {
@@ -99,7 +97,9 @@ std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPo
     lock.unlock();
     std::vector<std::optional<LocalCurvature>> fits(missing.size());
     inParallel(missing.size(), 4, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t n = begin; n < end; ++n) fits[n] = fitAbout(object, missing[n], radius);
+        for (std::size_t n = begin; n < end; ++n)
+            fits[n] = faceCurvature(object, object.index().positionsByRank()[missing[n]],
+                                    object.survey().normalOfRank(missing[n]), radius);
     });
     lock.lock();
     for (std::size_t n = 0; n < missing.size(); ++n) level.fits.emplace(missing[n], fits[n]);

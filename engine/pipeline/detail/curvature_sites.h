@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -20,5 +21,9 @@ struct LaidPoints {
 /// \param rung  see rungRadius()
 /// \thread any; starts threads
 [[nodiscard]] std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung);
+
+/// Returns the curvature of one face of the object about a place, within a radius [m]; empty where the points determine none.
+[[nodiscard]] std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
+                                                          const glm::dvec3& outward, double radius);
 
 } // namespace palp

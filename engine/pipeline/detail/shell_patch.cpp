@@ -78,6 +78,48 @@ bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field, double foun
            kNothing * (wave * geometricMean(sheetRigidity(patch).values()) + foundation);
 }
 
+/// Returns the place of the object's other face behind the contact, if it is so near that both are one sheet: 0.3 to 2.5
+/// thicknesses.
+std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& object)
+{
+    constexpr double kLeast = 0.3, kMost = 2.5, kSpacings = 2; // thicknesses; radius of the tube [1]
+    const double     h      = object.material().thickness;
+    const glm::dvec3 origin = patch.chart.origin, normal = patch.chart.frame.normal;
+    const double     radius = kSpacings * patch.spacing;
+    glm::dvec3       sum{};
+    double           count = 0;
+    for (const std::uint32_t point : object.index().gather(origin, std::hypot(kMost * h, radius))) {
+        const glm::dvec3 d     = object.positions()[point] - origin;
+        const double     depth = -glm::dot(d, normal);
+        if (depth < std::max(kLeast * h, patch.spacing) || depth > kMost * h) continue;
+        if (glm::length(d + depth * normal) > radius) continue;
+        sum += object.positions()[point];
+        ++count;
+    }
+    if (count == 0) return {};
+    return sum / count;
+}
+
+/// Returns whether the faces of one sheet bulge apart, or towards each other, so that its middle surface is less than half
+/// as curved as the one that is touched.
+bool isLensAtContact(const Patch& patch, const SoftObject& object)
+{
+    constexpr double kHalf  = 0.5;
+    const auto       behind = otherFaceBehind(patch, object);
+    if (!behind) return false;
+    const double     radius = patch.curvature->radius;
+    const glm::dvec3 normal = patch.chart.frame.normal;
+    const auto       front  = faceCurvature(object, patch.chart.origin, normal, radius);
+    const auto       back   = faceCurvature(object, *behind, -normal, radius);
+    if (!front || !back) return false;
+    double own = 0, both = 0;
+    for (int i = 0; i < 3; ++i) { // towards its own outside the back of a sheet bends the other way
+        own += glm::dot(front->tensor[i], front->tensor[i]);
+        both += glm::dot(front->tensor[i], front->tensor[i] - back->tensor[i]) / 2;
+    }
+    return both < kHalf * own;
+}
+
 } // namespace
 
 PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
@@ -128,6 +170,12 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
     if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
     patch.curvature = findCurvature(patch, object, points, settings);
     if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
+    if (isLensAtContact(patch, object)) {
+        patch.curvature.reset();
+        return stayFlat(
+            "the object is one thin sheet whose two faces bulge to either side, so that its middle is flatter "
+            "than the face that is touched; give the points of one face, laid on the middle, if it is curved");
+    }
 
     const Material& material = object.material();
     const int       middle   = settings.cells / 2;
