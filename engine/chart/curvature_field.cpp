@@ -16,14 +16,15 @@
 namespace palp {
 namespace {
 
-constexpr int kLattice = 9; ///< fits along a side of the window: 5 mm apart in 40 mm, less than half of most radii
-constexpr int kSurvey  = 5; ///< the same for the fits from which the radius follows
+constexpr int kLattice = 17; ///< places along a side of the window: 2.5 mm apart in 40 mm, less than half of any radius
+constexpr int kSurvey  = 9;  ///< the same for those from which the radius follows
 
-constexpr double kLeastSpacings = 5;    ///< radius of a fit, at least [spacings]: some 80 points
-constexpr double kNoiseError    = 9.5;  ///< error of the tensor over noise spacing / radius^3, measured [1]
-constexpr double kSurveyError   = 2.5;  ///< that of the survey [1/m]: a tenth of what a fingertip's surface has
-constexpr double kWantedError   = 0.05; ///< that of the fits over the typical curvature [1]
-constexpr double kFaces         = 0.26; ///< cosine of 75 degrees: points that face farther away lie around an edge [1]
+constexpr double kLeastSpacings = 5;     ///< radius of a fit, at least [spacings]: some 80 points
+constexpr double kNoiseError    = 9.5;   ///< error of the tensor over noise spacing / radius^3, measured [1]
+constexpr double kSurveyError   = 1.2;   ///< that of the survey [1/m]: a twentieth of what a fingertip's surface has
+constexpr double kSurveyShare   = 0.1;   ///< radius of the survey's fits, at least, over the window [1]: some 200 fits
+constexpr double kWantedError   = 0.025; ///< that of the fits over the typical curvature [1]
+constexpr double kFaces         = 0.26;  ///< cosine of 75 degrees: points that face farther away lie around an edge [1]
 
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
@@ -139,55 +140,98 @@ std::optional<glm::dvec3> meanNormal(const SurfaceSheet& sheet, std::span<const 
     return sum / length;
 }
 
-/// The places of the points in the chart, and where the surface is at a place of the chart.
-class Charted {
-public:
-    Charted(std::span<const glm::dvec3> places, std::span<const ChartPoint> positions)
-        : places_(places), positions_(positions)
-    {
-    }
+/// The tensor in a chart's axes [1/m].
+struct ChartTensor {
+    double x = 0, z = 0, xz = 0;
 
-    /// Returns the weighted mean of the points about a place of the chart, so that it moves smoothly as the place does; of
-    /// the nearest one where there are none.
-    [[nodiscard]] glm::dvec3 at(const ChartPoint& place, double radius) const
-    {
-        glm::dvec3  sum{};
-        double      all = 0, least = std::numeric_limits<double>::infinity();
-        std::size_t nearest = 0;
-        for (std::size_t n = 0; n < places_.size(); ++n) {
-            const double x = positions_[n].x - place.x, z = positions_[n].z - place.z;
-            const double squared = x * x + z * z;
-            if (squared < least) {
-                least   = squared;
-                nearest = n;
-            }
-            const double rest = 1 - squared / (radius * radius);
-            if (rest <= 0) continue;
-            sum += rest * rest * places_[n];
-            all += rest * rest;
-        }
-        return all > 0 ? sum / all : places_[nearest];
-    }
-
-private:
-    std::span<const glm::dvec3> places_;
-    std::span<const ChartPoint> positions_;
+    /// Returns the principal curvature that is larger by size [1/m].
+    [[nodiscard]] double largest() const noexcept { return std::abs(x + z) / 2 + std::hypot((x - z) / 2, xz); }
 };
 
-using Lattice = std::vector<std::optional<LocalCurvature>>; ///< row by row along z
-
-/// Fits at the nodes of a lattice over the window.
-Lattice fitLattice(const PatchWindow& window, int side, const Charted& charted, const SurfaceSheet& sheet,
-                   double radius)
+ChartTensor inChart(const LocalCurvature& here, const Frame& frame)
 {
-    constexpr double kAbout = 0.3; // radius of the mean that is a fit's centre, over that of the fit [1]
-    Lattice          lattice;
+    const Frame carried = frame.carriedTo(here.normal);
+    return {glm::dot(carried.east, here.tensor * carried.east), glm::dot(carried.north, here.tensor * carried.north),
+            glm::dot(carried.east, here.tensor * carried.north)};
+}
+
+/// A site in the chart.
+struct Sited {
+    ChartPoint  place; ///< [m]
+    ChartTensor tensor;
+    double      share = 0; ///< [1]
+};
+
+/// Returns the tensor at a place by linear regression over the sites within a radius; that of the nearest site, where
+/// there are none.
+ChartTensor regressionAt(const ChartPoint& place, std::span<const Sited> sites, double radius)
+{
+    constexpr double   kFlatter = 0.02; // of the weight, against slopes that hardly any site determines [1]
+    Eigen::Matrix3d    normal   = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d    right    = Eigen::Matrix3d::Zero();
+    const ChartTensor* nearest  = nullptr;
+    double             least    = std::numeric_limits<double>::infinity();
+    for (const Sited& site : sites) {
+        const double x = (site.place.x - place.x) / radius, z = (site.place.z - place.z) / radius;
+        const double squared = x * x + z * z;
+        if (squared < least) {
+            least   = squared;
+            nearest = &site.tensor;
+        }
+        if (squared >= 1) continue;
+        const double          weight = site.share * (1 - squared) * (1 - squared);
+        const Eigen::Vector3d row(1, x, z);
+        normal += weight * row * row.transpose();
+        right += weight * row * Eigen::RowVector3d(site.tensor.x, site.tensor.z, site.tensor.xz);
+    }
+    if (!(normal(0, 0) > 0)) return *nearest;
+    normal(1, 1) += kFlatter * normal(0, 0);
+    normal(2, 2) += kFlatter * normal(0, 0);
+    const Eigen::RowVector3d found = normal.ldlt().solve(right).row(0);
+    return {found[0], found[1], found[2]};
+}
+
+using Lattice = std::vector<ChartTensor>; ///< row by row along z
+
+constexpr double kAround = 1.0; ///< radius of the regression over that of the fits [1]: some ten sites
+
+/// Finds the curvature by the fits of one rung on a lattice over the window; empty without any.
+Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const CurvatureSites& sitesOf, int rung)
+{
+    std::vector<Sited> sites;
+    for (const CurvatureSite& site : sitesOf(rung))
+        sites.push_back({site.place, inChart(site.here, frame), site.share});
+    if (sites.empty()) return {};
+    Lattice lattice;
     for (int i = 0; i < side; ++i)
         for (int j = 0; j < side; ++j) {
             const ChartPoint place{window.corner.x + window.grid.sizeX() * i / (side - 1),
                                    window.corner.z + window.grid.sizeZ() * j / (side - 1)};
-            lattice.push_back(fitCurvature(sheet, charted.at(place, kAbout * radius), radius));
+            lattice.push_back(regressionAt(place, sites, kAround * rungRadius(rung)));
         }
+    return lattice;
+}
+
+constexpr double kRung = 1e-3, kRungs = 1.3; ///< the first radius [m]; their ratio [1]
+
+/// Returns where a radius is on the ladder, between two rungs.
+double rungOf(double radius)
+{
+    return std::log(radius / kRung) / std::log(kRungs);
+}
+
+/// Finds the curvature with fits of a radius, between those of two rungs; empty where there are none.
+Lattice latticeBetween(const PatchWindow& window, int side, const Frame& frame, const CurvatureSites& sites,
+                       double radius)
+{
+    const double  rung    = rungOf(radius);
+    const int     below   = int(std::floor(rung));
+    Lattice       lattice = latticeOf(window, side, frame, sites, below);
+    const Lattice wider   = latticeOf(window, side, frame, sites, below + 1);
+    if (lattice.empty() || wider.empty()) return wider;
+    for (std::size_t n = 0; n < lattice.size(); ++n)
+        for (double ChartTensor::*part : {&ChartTensor::x, &ChartTensor::z, &ChartTensor::xz})
+            lattice[n].*part = std::lerp(lattice[n].*part, wider[n].*part, rung - below);
     return lattice;
 }
 
@@ -198,50 +242,33 @@ struct Bend {
 
 Bend bendOf(const Lattice& lattice, double noise)
 {
-    double squares = 0, count = 0, largest = 0;
-    for (const auto& here : lattice) {
-        if (!here) continue;
-        const double k = here->largest();
-        squares += k * k;
-        largest = std::max(largest, k);
-        ++count;
+    double squares = 0, largest = 0;
+    for (const ChartTensor& here : lattice) {
+        squares += here.largest() * here.largest();
+        largest = std::max(largest, here.largest());
     }
     constexpr double kFlat = 1e-6; // a plane, whatever the object [1/m]
-    return {std::sqrt(std::max(kFlat * kFlat, squares / std::max(count, 1.0) - noise * noise)), largest};
+    return {std::sqrt(std::max(kFlat * kFlat, squares / double(lattice.size()) - noise * noise)), largest};
 }
 
-/// Returns the radius of all fits [m]; see curvatureField().
-double radiusFor(const PatchWindow& window, const Charted& charted, const SurfaceSheet& sheet,
-                 const CurvatureSettings& settings)
+/// Returns the radius of all fits [m], see curvatureField(); empty where the points determine no quadric.
+std::optional<double> radiusFor(const PatchWindow& window, const Frame& frame, const CurvatureSites& sites,
+                                const CurvatureSettings& settings)
 {
-    const double least     = kLeastSpacings * settings.spacing;
-    const double most      = std::max(least, settings.mostRadius);
-    const double cube      = kNoiseError * settings.noise * settings.spacing;
-    const double radius    = std::clamp(std::cbrt(cube / kSurveyError), least, most);
-    const Bend   bend      = bendOf(fitLattice(window, kSurvey, charted, sheet, radius), cube / std::pow(radius, 3));
+    const double  least  = kLeastSpacings * settings.spacing;
+    const double  most   = std::max(least, settings.mostRadius);
+    const double  cube   = kNoiseError * settings.noise * settings.spacing;
+    const double  coarse = std::max(least, kSurveyShare * std::max(window.grid.sizeX(), window.grid.sizeZ()));
+    const double  radius = std::clamp(std::cbrt(cube / kSurveyError), coarse, std::max(coarse, most));
+    const int     rung   = int(std::lround(rungOf(radius)));
+    const Lattice survey = latticeOf(window, kSurvey, frame, sites, rung);
+    if (survey.empty()) return {};
+    const Bend   bend      = bendOf(survey, cube / std::pow(rungRadius(rung), 3));
     const double felt      = settings.lengthRoot / std::sqrt(bend.typical);
     const double quiet     = std::cbrt(cube / (kWantedError * bend.typical));
     const double following = 0.5 / std::max(bend.largest, bend.typical);
     const double wanted    = std::min(std::max(felt, quiet), following);
     return std::clamp(wanted, least, most);
-}
-
-/// Gives places without a fit that of the nearest place with one; false if there is none.
-bool fillGaps(Lattice& lattice, int side)
-{
-    const Lattice known    = lattice;
-    bool          complete = true;
-    for (int n = 0; n < side * side; ++n) {
-        int least = std::numeric_limits<int>::max();
-        for (int m = 0; m < side * side && !known[std::size_t(n)]; ++m) {
-            const int di = n / side - m / side, dj = n % side - m % side;
-            if (!known[std::size_t(m)] || di * di + dj * dj >= least) continue;
-            least                   = di * di + dj * dj;
-            lattice[std::size_t(n)] = known[std::size_t(m)];
-        }
-        complete &= lattice[std::size_t(n)].has_value();
-    }
-    return complete;
 }
 
 /// A place along one axis of the lattice: weights of four nodes.
@@ -276,18 +303,6 @@ Along alongAt(double t, int side)
     return result;
 }
 
-/// The tensor in a chart's axes [1/m].
-struct ChartTensor {
-    double x = 0, z = 0, xz = 0;
-};
-
-ChartTensor inChart(const LocalCurvature& here, const Frame& frame)
-{
-    const Frame carried = frame.carriedTo(here.normal);
-    return {glm::dot(carried.east, here.tensor * carried.east), glm::dot(carried.north, here.tensor * carried.north),
-            glm::dot(carried.east, here.tensor * carried.north)};
-}
-
 CurvatureField interpolated(const PatchWindow& window, const std::vector<ChartTensor>& lattice)
 {
     CurvatureField field{NodeField(window.grid), NodeField(window.grid), NodeField(window.grid)};
@@ -310,12 +325,9 @@ CurvatureField interpolated(const PatchWindow& window, const std::vector<ChartTe
 
 } // namespace
 
-double LocalCurvature::largest() const noexcept
+double rungRadius(int rung) noexcept
 {
-    const Frame  axes = Frame::about(normal);
-    const double a = glm::dot(axes.east, tensor * axes.east), c = glm::dot(axes.north, tensor * axes.north);
-    const double b = glm::dot(axes.east, tensor * axes.north);
-    return std::abs(a + c) / 2 + std::hypot((a - c) / 2, b);
+    return kRung * std::pow(kRungs, rung);
 }
 
 std::optional<LocalCurvature> fitCurvature(const SurfaceSheet& sheet, const glm::dvec3& centre, double radius)
@@ -341,21 +353,16 @@ std::optional<LocalCurvature> fitCurvature(const SurfaceSheet& sheet, const glm:
     return result;
 }
 
-std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Frame& frame,
-                                             std::span<const glm::dvec3> places, std::span<const ChartPoint> positions,
-                                             const SurfaceSheet& sheet, const CurvatureSettings& settings)
+std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Frame& frame, const CurvatureSites& sites,
+                                             const CurvatureSettings& settings)
 {
-    PALP_EXPECT(places.size() == positions.size() && !places.empty(),
-                std::to_string(places.size()) + " places, " + std::to_string(positions.size()) + " positions");
     PALP_EXPECT(settings.spacing > 0, std::to_string(settings.spacing) + " m between the points");
-    const Charted charted(places, positions);
-    const double  radius  = radiusFor(window, charted, sheet, settings);
-    Lattice       lattice = fitLattice(window, kLattice, charted, sheet, radius);
-    if (!fillGaps(lattice, kLattice)) return {};
-    std::vector<ChartTensor> tensors;
-    for (const auto& here : lattice) tensors.push_back(inChart(*here, frame));
-    CurvatureField field = interpolated(window, tensors);
-    field.radius         = radius;
+    const auto radius = radiusFor(window, frame, sites, settings);
+    if (!radius) return {};
+    const Lattice lattice = latticeBetween(window, kLattice, frame, sites, *radius);
+    if (lattice.empty()) return {};
+    CurvatureField field = interpolated(window, lattice);
+    field.radius         = *radius;
     return field;
 }
 

@@ -1,12 +1,14 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
-#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/chart/chart.h"
 #include "engine/chart/resample.h"
+#include "engine/cloud/curvature_notes.h"
 #include "engine/core/grid.h"
 
 namespace palp {
@@ -15,14 +17,6 @@ namespace palp {
 struct SurfaceSheet {
     std::span<const glm::dvec3> places;  ///< [m]
     std::span<const glm::dvec3> normals; ///< [1] unit, roughly, towards the finger; one for each place
-};
-
-/// How a surface bends at a place.
-struct LocalCurvature {
-    glm::dvec3 normal{};  ///< [1] unit, towards the side of the sheet's normals
-    glm::dmat3 tensor{0}; ///< [1/m] in the world's axes, symmetric, nothing along the normal; > 0 bulges to the finger
-
-    [[nodiscard]] double largest() const noexcept; ///< [1/m] of the two principal curvatures, the larger by size
 };
 
 /// Fits a quadric to the points of a sheet about a place.
@@ -49,20 +43,31 @@ struct CurvatureField {
     double    radius = 0; ///< of the fits [m]
 };
 
-/// Fits the curvature on a lattice over the window and interpolates it at the nodes.
+/// A fit, and where its place is in the chart.
+struct CurvatureSite {
+    ChartPoint     place; ///< [m]
+    LocalCurvature here;
+    double         share = 1; ///< of the surface that it stands for, among others of its radius
+};
+
+/// Returns the fits of one rung in and around a window.
+using CurvatureSites = std::function<std::vector<CurvatureSite>(int rung)>;
+
+/// Returns the radius of a rung of the ladder of radii [m]. Fits are made with these alone, so that those of other windows
+/// can be taken; a window asks for the two rungs about its own radius.
+[[nodiscard]] double rungRadius(int rung) noexcept;
+
+/// Finds the curvature at the nodes of a window from fits at sites that do not depend on where the window lies.
 ///
-/// All fits have one radius: as small as noise permits, which may change the tensor by 5 % of what is typical in the
-/// window, but not below the length of a shell of that curvature, beyond which detail is not felt, nor above half the
-/// smallest radius of curvature. It changes smoothly as the window moves. The tensors are turned into the chart by
-/// carrying its axes along the shortest arc to each normal. Beyond the border of the surface that of the border goes on.
-///
-/// \param places     of the points that have a place in the chart [m]
-/// \param positions  these places [m], as many
-/// \param sheet      the surface, better farther than the window by `mostRadius`
+/// The fits of a window have one radius: as small as noise permits, which may change the tensor by 2.5 % of what is typical
+/// in the window, but not below the length of a shell of that curvature, beyond which detail is not felt, nor above half
+/// the smallest radius of curvature. Two rungs are blended to it, so that it changes smoothly as the window moves; so does
+/// the field of a rung, linear regression over the sites within a radius. The tensors are turned into the chart by carrying
+/// its axes along the shortest arc to each normal. Beyond the border of the surface that of the border goes on.
 /// \return empty if nowhere in the window the points determine a quadric
-/// \thread pure
-[[nodiscard]] std::optional<CurvatureField>
-curvatureField(const PatchWindow& window, const Frame& frame, std::span<const glm::dvec3> places,
-               std::span<const ChartPoint> positions, const SurfaceSheet& sheet, const CurvatureSettings& settings);
+/// \thread as `sites`
+[[nodiscard]] std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Frame& frame,
+                                                           const CurvatureSites&    sites,
+                                                           const CurvatureSettings& settings);
 
 } // namespace palp

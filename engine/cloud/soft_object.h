@@ -13,6 +13,7 @@
 namespace palp {
 
 class CoarseObject;
+struct CurvatureNotes;
 
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
@@ -66,6 +67,10 @@ public:
     /// \thread any; the first call for a side takes up to a second for millions of points
     [[nodiscard]] std::shared_ptr<const CoarseObject> coarse(double side) const;
 
+    /// Returns what is known of the curvature of the surface, to be read and added to by whoever fits it; all objects of the
+    /// same points share it.
+    [[nodiscard]] CurvatureNotes& curvatureNotes() const noexcept { return *curvatureNotes_; }
+
     /// Returns what withFoundation() took [1]; empty: the foundation is the same everywhere.
     [[nodiscard]] std::span<const double> foundationShape() const noexcept { return *foundationShape_; }
 
@@ -96,6 +101,7 @@ private:
     std::shared_ptr<const std::vector<Triangle>> faces_;           ///< never null
     std::shared_ptr<const SurfaceMesh>           mesh_;            ///< never null
     std::shared_ptr<const SurfaceSurvey>         survey_;          ///< never null
+    std::shared_ptr<CurvatureNotes>              curvatureNotes_;  ///< never null
     std::shared_ptr<const std::vector<double>>   foundationShape_; ///< never null
     std::shared_ptr<const std::vector<double>>   stiffening_;      ///< [1/m] never null
     std::shared_ptr<const std::vector<double>>   held_;            ///< never null

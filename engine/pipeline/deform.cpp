@@ -242,6 +242,7 @@ double unrolledShare(const Patch& patch, const TouchedSurface& surface, const Pa
 /// The points of a ball whose place in the chart is found.
 struct Laid {
     std::vector<std::uint32_t> touched; ///< ranks of those of the touched surface
+    std::vector<glm::dvec3>    normals; ///< of the same [1], towards the finger
     std::vector<std::uint32_t> others;  ///< points that are not of it
 };
 
@@ -286,6 +287,7 @@ Laid layPiece(Patch& patch, const SoftObject& object, const Ball& ball, const To
         if (!position) continue;
         known[surface.inBall(k)] = true;
         laid.touched.push_back(surface.rank(k));
+        laid.normals.push_back(surface.normalAt(k));
         patch.points.push_back(surface.point(k));
         patch.positions.push_back(*position);
     }
@@ -295,24 +297,24 @@ Laid layPiece(Patch& patch, const SoftObject& object, const Ball& ball, const To
 }
 
 /// Lays all of a ball flat by the sphere's map.
-/// \return the ranks of the points that have a place
-std::vector<std::uint32_t> layBall(Patch& patch, const Ball& ball, const SoftObject& object)
+/// \return the points that have a place; nothing says which way they face
+Laid layBall(Patch& patch, const Ball& ball, const SoftObject& object)
 {
-    std::vector<std::uint32_t> ranks;
+    Laid laid;
     for (std::size_t k = 0; k < ball.points.size(); ++k)
         if (const auto position = patch.chart.project(object.positions()[ball.points[k]])) {
-            ranks.push_back(ball.ranks[k]);
+            laid.touched.push_back(ball.ranks[k]);
             patch.points.push_back(ball.points[k]);
             patch.positions.push_back(*position);
         }
     patch.touched = patch.points.size();
-    return ranks;
+    return laid;
 }
 
 /// Makes the chart, and lays the points flat in it, those of the touched surface first.
-/// \return the ranks of these
-std::vector<std::uint32_t> layFlat(Patch& patch, const SoftObject& object, const Ball& ball, TouchedSurface surface,
-                                   const PatchSettings& settings, const std::optional<Frame>& carried)
+/// \return the ranks and normals of these
+Laid layFlat(Patch& patch, const SoftObject& object, const Ball& ball, TouchedSurface surface,
+             const PatchSettings& settings, const std::optional<Frame>& carried)
 {
     const StageClock clock(patch.times.project);
     patch.chart = chartAt(patch, object, settings, carried);
@@ -322,14 +324,17 @@ std::vector<std::uint32_t> layFlat(Patch& patch, const SoftObject& object, const
     if (patch.unrolled == 0 && surface.allFace() && projectWhole(patch, surface)) {
         patch.points  = ball.points;
         patch.touched = patch.points.size();
-        return ball.ranks;
+        Laid laid{ball.ranks, {}, {}};
+        if (settings.theory == Theory::shell)
+            for (std::size_t k = 0; k < surface.size(); ++k) laid.normals.push_back(surface.normalAt(k));
+        return laid;
     }
     patch.positions.clear();
     Laid laid     = layPiece(patch, object, ball, surface, settings);
     patch.touched = patch.points.size();
     // The rest of the ball, the other side of a thin body above all, moves with the touched side but does not count.
     projectPoints(patch, object, laid.others);
-    return std::move(laid.touched);
+    return laid;
 }
 
 // --- 2.4: a grid takes over the rigidity of the points
@@ -671,11 +676,12 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
     TouchedSurface surface = touchedSurface(patch, object, ball, settings);  // on the side that is touched,
     fitSphereTo(patch, object, ball, surface, settings);                     // 2.2: lie close to a sphere,
     if (patch.deformed()) {
-        const auto ranks = layFlat(patch, object, ball, std::move(surface), settings,
-                                   carried);          // 2.3: which an equal-area map lays flat,
-        fillRigidity(patch, object, ranks, settings); // 2.4: where a grid takes over their rigidity
+        const Laid laid = layFlat(patch, object, ball, std::move(surface), settings,
+                                  carried);                  // 2.3: which an equal-area map lays flat,
+        fillRigidity(patch, object, laid.touched, settings); // 2.4: where a grid takes over their rigidity
         const StageClock clock(patch.times.resample);
-        curvePatch(patch, object, settings); //      and, if it is to be a shell, their curvature
+        curvePatch(patch, object, {laid.touched, std::span(patch.positions).first(patch.touched), laid.normals},
+                   settings); //      and, if it is to be a shell, their curvature
     }
     patch.gathered = std::move(ball.points);
     return patch.deformed();

@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -101,12 +103,35 @@ PatchWindow windowAt(double x)
     return window;
 }
 
-CurvatureField fieldOf(const Points& points, double noise, double x = 0)
+/// Fits about one point of each square of half a radius, wherever the window is.
+CurvatureSites sitesOn(const Points& points)
+{
+    return [&points, known = std::map<int, std::vector<CurvatureSite>>()](int rung) mutable {
+        if (const auto found = known.find(rung); found != known.end()) return found->second;
+        std::map<std::pair<int, int>, std::vector<std::size_t>> squares;
+        const double                                            side = rungRadius(rung) / 2;
+        for (std::size_t n = 0; n < points.positions.size(); ++n)
+            squares[{int(std::floor(points.positions[n].x / side)), int(std::floor(points.positions[n].z / side))}]
+                .push_back(n);
+        std::vector<CurvatureSite> sites;
+        for (const auto& [square, members] : squares) {
+            const std::size_t one = members.front();
+            const auto        fit = fitCurvature({points.places, points.normals}, points.places[one], rungRadius(rung));
+            if (fit) sites.push_back({points.positions[one], *fit, double(members.size())});
+        }
+        return known[rung] = sites;
+    };
+}
+
+CurvatureField fieldOf(const CurvatureSites& sites, double noise, double x = 0)
 {
     const CurvatureSettings settings{.spacing = kSpacing, .noise = noise, .mostRadius = 20e-3, .lengthRoot = 0.018};
-    return curvatureField(windowAt(x), Frame{}, points.places, points.positions, {points.places, points.normals},
-                          settings)
-        .value();
+    return curvatureField(windowAt(x), Frame{}, sites, settings).value();
+}
+
+CurvatureField fieldOf(const Points& points, double noise)
+{
+    return fieldOf(sitesOn(points), noise);
 }
 
 struct Tensor {
@@ -189,11 +214,12 @@ TEST(CurvatureField, IsHardlyMovedByStrayPoints)
 
 TEST(CurvatureField, ChangesSmoothlyAsTheWindowMovesOverNoisyPoints)
 {
-    const Points        points = scattered(ellipsoid(50e-3, 50e-3, 50e-3), kNoise, 4);
-    const int           middle = 16;
-    std::vector<double> means; // [1/m]
+    const Points         points = scattered(ellipsoid(50e-3, 50e-3, 50e-3), kNoise, 4);
+    const int            middle = 16;
+    const CurvatureSites sites  = sitesOn(points);
+    std::vector<double>  means; // [1/m]
     for (int n = -10; n <= 10; ++n) {
-        const CurvatureField field = fieldOf(points, kNoise, n * 0.5e-3);
+        const CurvatureField field = fieldOf(sites, kNoise, n * 0.5e-3);
         means.push_back((field.x(middle, middle) + field.z(middle, middle)) / 2);
     }
     for (std::size_t n = 1; n + 1 < means.size(); ++n) {
@@ -211,9 +237,7 @@ TEST(CurvatureField, TurnsWithTheChart)
     for (std::size_t n = 0; n < points.places.size(); ++n)
         other.positions[n] = {glm::dot(points.places[n], turned.east), glm::dot(points.places[n], turned.north)};
     const CurvatureField field =
-        curvatureField(windowAt(0), turned, other.places, other.positions, {other.places, other.normals},
-                       {.spacing = kSpacing, .mostRadius = 20e-3})
-            .value();
+        curvatureField(windowAt(0), turned, sitesOn(other), {.spacing = kSpacing, .mostRadius = 20e-3}).value();
     const double c = std::cos(angle), s = std::sin(angle);
     EXPECT_NEAR(field.x(16, 16), 20 * c * c + 5 * s * s, 0.1); // 0.5 % by the fit
     EXPECT_NEAR(field.z(16, 16), 20 * s * s + 5 * c * c, 0.1);
@@ -252,9 +276,8 @@ TEST(CurvatureField, IsEmptyWherePointsDetermineNoQuadric)
         line.normals.push_back({0, 0, 1});
         line.positions.push_back({n * kSpacing, 0});
     }
-    EXPECT_FALSE(curvatureField(windowAt(0), Frame{}, line.places, line.positions, {line.places, line.normals},
-                                {.spacing = kSpacing, .mostRadius = 20e-3})
-                     .has_value());
+    EXPECT_FALSE(
+        curvatureField(windowAt(0), Frame{}, sitesOn(line), {.spacing = kSpacing, .mostRadius = 20e-3}).has_value());
     EXPECT_FALSE(fitCurvature({line.places, line.normals}, {}, 10e-3).has_value());
 }
 

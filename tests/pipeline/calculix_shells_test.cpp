@@ -217,8 +217,8 @@ TEST(CalculixShells, WhatIsNotLiesBetweenSupportedAndClampedEdges)
     for (const CalculixShell& of : kCalculixShells) {
         if (kindOf(of.name) != Kind::held || of.name == "sheet") continue;
         EXPECT_LT(feltBy(Theory::shell, Edge::supported, of), of.stiffness) << of.name;
-        EXPECT_NEAR(feltBy(Theory::shell, Edge::clamped, of) / of.stiffness, 1.035, 0.04)
-            << of.name << ": held so, -0.1 to 7 % off; the tube's window spans its length and not what is around";
+        EXPECT_NEAR(feltBy(Theory::shell, Edge::clamped, of) / of.stiffness, 1.03, 0.05)
+            << of.name << ": held so, -2 to 7 % off; the tube's window spans its length and not what is around";
     }
 }
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <functional>
+#include <optional>
 #include <random>
 #include <string>
 #include <vector>
@@ -59,14 +61,15 @@ SoftObject ellipsoid(const glm::dvec3& halfAxes, double noise, unsigned seed = 1
 }
 
 /// A sheet z = height(x, y), 60 mm to each side.
-SoftObject sheet(const std::function<double(double, double)>& height)
+SoftObject sheet(const std::function<double(double, double)>& height, double noise = 0)
 {
     std::mt19937                           random(3);
+    std::normal_distribution<double>       away(0, noise > 0 ? noise : 1);
     std::uniform_real_distribution<double> along(-60e-3, 60e-3);
     std::vector<glm::dvec3>                points;
     for (int n = 0; n < 14400; ++n) {
         const double x = along(random), y = along(random);
-        points.emplace_back(x, y, height(x, y));
+        points.emplace_back(x, y, height(x, y) + (noise > 0 ? away(random) : 0.0));
     }
     return objectOf(std::move(points));
 }
@@ -132,25 +135,63 @@ TEST(ShellPatch, WhatIsFlatTakesThePlatesPathToTheBit)
     EXPECT_EQ(shell.compliance, plate.compliance);
 }
 
+/// Logarithms of what is felt along a path of 20 mm.
+std::vector<double> feltAlong(const SoftObject& object, const std::function<glm::dvec3(double)>& path)
+{
+    std::vector<double>  felt;
+    std::optional<Frame> carried;
+    for (int n = -10; n <= 10; ++n) {
+        const Patch patch = touchOf(object, path(n * 1e-3), kShell, carried);
+        carried           = patch.chart.frame;
+        felt.push_back(std::log(patch.feltStiffness));
+    }
+    return felt;
+}
+
+/// The steps J that the keenest finger tells apart, which notices 7 %.
+double stepsOf(const std::vector<double>& logarithms)
+{
+    return (std::ranges::max(logarithms) - std::ranges::min(logarithms)) / std::log(1.07);
+}
+
 TEST(ShellPatch, FeelsHardlyAnyScatterOfThePoints)
 {
-    struct Object {
-        const char* name;
-        glm::dvec3  halfAxes;
+    constexpr double kWave = 2 * 3.14159265 / 60e-3, kCrest = 1 / (25e-3 * kWave * kWave); // [1/m], [m]
+    const auto       tube  = [](double x, double) { return std::sqrt(80e-3 * 80e-3 - x * x); };
+    const auto       ridge = [](double x, double) { return kCrest * std::cos(kWave * x); };
+    const glm::dvec3 oval(60e-3, 45e-3, 35e-3);
+    const auto overOval = [&](double x) { return glm::dvec3(x, 0, oval.z * std::sqrt(1 - x * x / (oval.x * oval.x))); };
+    const auto report   = [](const char* name, double noise, double steps, double most) {
+        std::printf("  %s, noise %.1f mm: J %.3f\n", name, noise * 1e3, steps);
+        EXPECT_LT(steps, most) << name << ", noise " << noise;
     };
-    for (const Object& of : {Object{"sphere", glm::dvec3(50e-3)}, Object{"ellipsoid", {60e-3, 45e-3, 35e-3}}})
-        for (const double noise : {0.0, 0.3e-3}) {
-            const SoftObject    object = ellipsoid(of.halfAxes, noise);
-            std::vector<double> felt;
-            for (int n = -4; n <= 4; ++n) {
-                const double x = n * 1e-3, z = of.halfAxes.z * std::sqrt(1 - x * x / (of.halfAxes.x * of.halfAxes.x));
-                felt.push_back(touchOf(object, {x, 0, z}).feltStiffness);
-            }
-            double worst = 0; // change from step to step that is no slow one: measured 0.4 % with noise, 0.1 without
-            for (std::size_t n = 1; n + 1 < felt.size(); ++n)
-                worst = std::max(worst, std::abs(felt[n - 1] - 2 * felt[n] + felt[n + 1]) / 2 / felt[n]);
-            EXPECT_LT(worst, noise > 0 ? 0.01 : 0.002) << of.name << ", noise " << noise;
-        }
+    const std::vector<double> quiet = feltAlong(ellipsoid(oval, 0), overOval);
+    for (const double noise : {0.0, 0.3e-3}) {
+        // Measured: below 0.001, and 0.11 to 0.13 with noise. Along a crest the chart adds 0.24.
+        const double most = noise > 0 ? 0.2 : 0.01;
+        report("sphere", noise,
+               stepsOf(feltAlong(ellipsoid(glm::dvec3(50e-3), noise),
+                                 [](double x) { return glm::dvec3(x, 0, std::sqrt(50e-3 * 50e-3 - x * x)); })),
+               most);
+        report("tube", noise, stepsOf(feltAlong(sheet(tube, noise), [](double y) { return glm::dvec3(0, y, 80e-3); })),
+               most);
+        report("ridge", noise,
+               stepsOf(feltAlong(sheet(ridge, noise), [](double y) { return glm::dvec3(0, y, kCrest); })), most + 0.4);
+        std::vector<double> scattered = feltAlong(ellipsoid(oval, noise), overOval);
+        for (std::size_t n = 0; n < quiet.size(); ++n) scattered[n] -= quiet[n]; // what is felt of its shape
+        report("ellipsoid", noise, stepsOf(scattered), most);
+    }
+}
+
+TEST(ShellPatch, WhatIsFeltDependsOnThePointsAndNotOnEarlierTouches)
+{
+    const SoftObject fresh   = ellipsoid({60e-3, 45e-3, 35e-3}, 0.3e-3),
+                     touched = ellipsoid({60e-3, 45e-3, 35e-3}, 0.3e-3);
+    for (const double x : {-12e-3, 3e-3, 9e-3}) (void)touchOf(touched, {x, 5e-3, 34e-3});
+    const Patch first = touchOf(fresh, {0, 0, 35e-3}), later = touchOf(touched, {0, 0, 35e-3});
+    EXPECT_EQ(first.compliance, later.compliance);
+    EXPECT_EQ(first.response.values(), later.response.values());
+    EXPECT_LT(touchOf(touched, {0, 0, 35e-3}).times.resample, 0.5 * first.times.resample) << "then nothing was kept";
 }
 
 TEST(ShellPatch, TheChartsAxesDoNotMatterButForTheSquareWindow)
@@ -245,6 +286,26 @@ TEST(ShellPatch, SaysWhyItStaysFlat)
     EXPECT_TRUE(warned(patch, ball, "bent as a flat plate"));
     const SoftObject odd = dome.withMaterial({.thickness = 1e-3, .poissonRatio = -0.2});
     EXPECT_TRUE(warned(touchOf(odd, {0, 0, 50e-3}), kShell, "Poisson's ratio"));
+}
+
+TEST(ShellPatch, ALensIsNoShellAndASheetWithTwoFacesIs)
+{
+    std::mt19937                           random(3);
+    std::uniform_real_distribution<double> along(-25e-3, 25e-3);
+    const auto                             twoFaces = [&](double below) { // sheets of 1 mm in the middle
+        std::vector<glm::dvec3> points;
+        for (int n = 0; n < 5000; ++n) {
+                                        const double x = along(random), y = along(random), sag = 10 * (x * x + y * y);
+                                        points.emplace_back(x, y, n % 2 ? -sag : -1e-3 + below * sag);
+        }
+        return objectOf(std::move(points));
+    };
+    PatchSettings small = kShell;
+    small.window        = 20e-3;
+    const Patch lens = touchOf(twoFaces(1), {}, small), dome = touchOf(twoFaces(-1), {}, small);
+    EXPECT_FALSE(lens.curvature);
+    EXPECT_TRUE(warned(lens, small, "whose two faces bulge"));
+    EXPECT_TRUE(dome.curvature) << dome.flatBecause;
 }
 
 TEST(ShellPatch, EverySideOfTheMembraneIsHeldAsItsOwnSideOfTheWindow)

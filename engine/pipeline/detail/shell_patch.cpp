@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/extremes.h"
-#include "engine/pipeline/detail/touched_surface.h"
 #include "engine/pipeline/detail/whole_object.h"
 
 namespace palp {
@@ -36,27 +34,24 @@ double meanOfSquares(const NodeField& field)
     return sum / double(field.values().size());
 }
 
-/// Fits the curvature, to a piece of surface that is larger than the window by the radius of the largest fit.
-std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject& object, const PatchSettings& settings)
+/// Returns the noise of the points [m], the root of its mean square: one that changes little as points come and go.
+double noiseOf(const SoftObject& object, const LaidPoints& points)
 {
-    const double         most = settings.window / 2;
-    const Ball           ball = ballOf(object, patch.contact.point, std::numbers::sqrt2 * settings.window / 2 + most);
-    const TouchedSurface surface = touchedSurface(object, patch.contact, ball);
-    const double         side    = glm::dot(surface.normal, patch.chart.frame.normal) < 0 ? -1 : 1;
-    std::vector<glm::dvec3> around, normals;
-    for (std::size_t k = 0; k < surface.size(); ++k) {
-        around.push_back(surface.place(k));
-        normals.push_back(side * surface.normalAt(k));
-    }
+    double sum = 0;
+    for (const std::uint32_t rank : points.ranks)
+        sum += object.survey().noiseOfRank(rank) * object.survey().noiseOfRank(rank);
+    return std::sqrt(sum / double(std::max<std::size_t>(1, points.ranks.size())));
+}
 
-    std::vector<glm::dvec3> places;
-    places.reserve(patch.touched);
-    for (std::size_t k = 0; k < patch.touched; ++k) places.push_back(object.positions()[patch.points[k]]);
-    return curvatureField(patch.window, patch.chart.frame, places, std::span(patch.positions).first(patch.touched),
-                          {around, normals},
+/// Finds how the touched surface is curved.
+std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject& object, const LaidPoints& points,
+                                            const PatchSettings& settings)
+{
+    return curvatureField(patch.window, patch.chart.frame,
+                          [&](int rung) { return curvatureSites(object, points, rung); },
                           {.spacing    = patch.spacing,
-                           .noise      = surface.noise,
-                           .mostRadius = most,
+                           .noise      = noiseOf(object, points),
+                           .mostRadius = settings.window / 2,
                            .lengthRoot = lengthRoot(object.material())});
 }
 
@@ -81,6 +76,48 @@ bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field, double foun
     const double     wave     = 4 * std::pow(std::numbers::pi / bentSize(patch), 4);
     return k2 / extremesOf(patch.membraneCompliance.values()).least <
            kNothing * (wave * geometricMean(sheetRigidity(patch).values()) + foundation);
+}
+
+/// Returns the place of the object's other face behind the contact, if it is so near that both are one sheet: 0.3 to 2.5
+/// thicknesses.
+std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& object)
+{
+    constexpr double kLeast = 0.3, kMost = 2.5, kSpacings = 2; // thicknesses; radius of the tube [1]
+    const double     h      = object.material().thickness;
+    const glm::dvec3 origin = patch.chart.origin, normal = patch.chart.frame.normal;
+    const double     radius = kSpacings * patch.spacing;
+    glm::dvec3       sum{};
+    double           count = 0;
+    for (const std::uint32_t point : object.index().gather(origin, std::hypot(kMost * h, radius))) {
+        const glm::dvec3 d     = object.positions()[point] - origin;
+        const double     depth = -glm::dot(d, normal);
+        if (depth < std::max(kLeast * h, patch.spacing) || depth > kMost * h) continue;
+        if (glm::length(d + depth * normal) > radius) continue;
+        sum += object.positions()[point];
+        ++count;
+    }
+    if (count == 0) return {};
+    return sum / count;
+}
+
+/// Returns whether the faces of one sheet bulge apart, or towards each other, so that its middle surface is less than half
+/// as curved as the one that is touched.
+bool isLensAtContact(const Patch& patch, const SoftObject& object)
+{
+    constexpr double kHalf  = 0.5;
+    const auto       behind = otherFaceBehind(patch, object);
+    if (!behind) return false;
+    const double     radius = patch.curvature->radius;
+    const glm::dvec3 normal = patch.chart.frame.normal;
+    const auto       front  = faceCurvature(object, patch.chart.origin, normal, radius);
+    const auto       back   = faceCurvature(object, *behind, -normal, radius);
+    if (!front || !back) return false;
+    double own = 0, both = 0;
+    for (int i = 0; i < 3; ++i) { // towards its own outside the back of a sheet bends the other way
+        own += glm::dot(front->tensor[i], front->tensor[i]);
+        both += glm::dot(front->tensor[i], front->tensor[i] - back->tensor[i]) / 2;
+    }
+    return both < kHalf * own;
 }
 
 } // namespace
@@ -123,7 +160,7 @@ Shell homogeneousOf(const Shell& shell)
     return mean;
 }
 
-void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings)
 {
     if (settings.large == Large::on || settings.theory == Theory::shell) fillMembrane(patch, object.material());
     if (settings.theory == Theory::plate) return;
@@ -131,8 +168,14 @@ void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& set
     if (settings.neighbourhood == Neighbourhood::ball)
         return stayFlat("the points of a ball are no surface with a curvature; set neighbourhood surface");
     if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
-    patch.curvature = findCurvature(patch, object, settings);
+    patch.curvature = findCurvature(patch, object, points, settings);
     if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
+    if (isLensAtContact(patch, object)) {
+        patch.curvature.reset();
+        return stayFlat(
+            "the object is one thin sheet whose two faces bulge to either side, so that its middle is flatter "
+            "than the face that is touched; give the points of one face, laid on the middle, if it is curved");
+    }
 
     const Material& material = object.material();
     const int       middle   = settings.cells / 2;

@@ -1,4 +1,5 @@
 #pragma once
+#include "engine/pipeline/detail/curvature_sites.h"
 #include "engine/pipeline/patch.h"
 
 namespace palp {
@@ -6,7 +7,8 @@ namespace palp {
 /// Makes a shell of the patch's plate, if the settings ask for one: finds how the touched surface is curved, and what its
 /// membrane resists. Where that cannot be, the patch stays a plate, and says why in `flatBecause`.
 /// \param object  that the patch's points are of
-void curvePatch(Patch& patch, const SoftObject& object, const PatchSettings& settings);
+/// \param points  of the touched surface, all that have a place in the chart
+void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings);
 
 /// Returns the shell of a patch, a flat one of a patch that is not curved.
 /// \pre its membrane's compliance is known: the settings ask for a shell or large deflections

@@ -98,7 +98,8 @@ Json shellJson(const Patch& patch, const PatchSettings& settings, PlateSolver& s
             {"length", patch.shellLength},
             {"window_lengths", patch.window.grid.sizeX() / patch.shellLength},
             {"felt_stiffness_supported", orNull(range ? std::optional(range->supported) : std::nullopt)},
-            {"felt_stiffness_clamped", orNull(range ? std::optional(range->clamped) : std::nullopt)}};
+            {"felt_stiffness_clamped", orNull(range ? std::optional(range->clamped) : std::nullopt)},
+            {"edges", edgesText(settings.edges)}};
 }
 
 /// What a touch says of deflections that are not small beside the thickness; null unless it was asked for.

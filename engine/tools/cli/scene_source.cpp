@@ -36,16 +36,16 @@ std::string helpOf(const SceneKey& key)
     if (!key.words.empty() && key.name != "preset") help += ": " + key.expected();
     if (!key.unit.empty() && key.unit != "1") help += " [" + std::string(key.unit) + "]";
     if (key.name != "stiffness") return help;
-    return help +
-           "; NAME:key=value,... in SI units:\n"
-           "  constant: value\n"
-           "  linear, hyperbolic, exponential: from, to, and axis (x, y or z; x if absent) or start, end\n"
-           "  gaussian: from, to, centre or centres, sigma\n"
-           "  disc: from, to, centre or centres, radius\n"
-           "  box: from, to, low, high\n"
-           "  checker: from, to, edge\n"
-           "  grid: file (.npy, .nii or .nii.gz), factor, outside, along (points or thickness); of .npy origin, spacing; of .nii length_unit\n"
-           "such as linear:from=2e4,to=2e6,axis=x or gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003";
+    return help + "; NAME:key=value,... in SI units:\n"
+                  "  constant: value\n"
+                  "  linear, hyperbolic, exponential: from, to, and axis (x, y or z; x if absent) or start, end\n"
+                  "  gaussian: from, to, centre or centres, sigma\n"
+                  "  disc: from, to, centre or centres, radius\n"
+                  "  box: from, to, low, high\n"
+                  "  checker: from, to, edge\n"
+                  "  grid: file (.npy, .nii or .nii.gz), factor, outside, along (points or thickness); of .npy origin, "
+                  "spacing; of .nii length_unit\n"
+                  "such as linear:from=2e4,to=2e6,axis=x or gaussian:from=3e5,to=3e6,centre=0;0;0,sigma=0.003";
 }
 
 /// Returns the end of the sentence on a variable that nothing reads.
@@ -92,6 +92,13 @@ void SceneSource::addTo(CLI::App& command, SceneKey::Group upTo)
                      : command.add_option_function<std::string>(
                       flagOf(key->name), [this, text](const std::string& value) { flags[text] = value; }, helpOf(*key));
         option->group(titleOf(key->group));
+        if (key->name != "theory") continue;
+        command
+            .add_flag_callback(
+                "--flat", [this, text] { flags[text] = palp::name(Theory::plate); },
+                "bends what is curved as a flat plate, also where the scene asks for a shell: --theory plate")
+            ->group(titleOf(key->group))
+            ->excludes(option);
     }
 }
 

@@ -74,9 +74,10 @@ void printShell(const nlohmann::json& shell)
                 quantity(shell["curvatures"][0], "1/m").c_str(), quantity(shell["curvatures"][1], "1/m").c_str(),
                 shell["window_lengths"].get<double>(), quantity(shell["length"], "m").c_str());
     if (!shell["felt_stiffness_supported"].is_null())
-        std::printf(", felt %s with supported and %s with clamped edges",
+        std::printf(", felt %s with supported and %s with clamped edges; the answer is that of the scene's: %s",
                     quantity(shell["felt_stiffness_supported"], "N/m").c_str(),
-                    quantity(shell["felt_stiffness_clamped"], "N/m").c_str());
+                    quantity(shell["felt_stiffness_clamped"], "N/m").c_str(),
+                    shell["edges"].get<std::string>().c_str());
     std::printf("\n");
 }
 

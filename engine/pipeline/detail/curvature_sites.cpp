@@ -1,0 +1,116 @@
+#include "engine/pipeline/detail/curvature_sites.h"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <numbers>
+#include <optional>
+
+#include <glm/geometric.hpp>
+
+#include "engine/core/contract.h"
+#include "engine/core/parallel.h"
+#include "engine/pipeline/detail/touched_surface.h"
+
+namespace palp {
+namespace {
+
+/// Side of the cubes that have a site on each face, over the radius of the fits [1]; the index takes it to 1.4 more or less.
+constexpr double kCube = 0.5;
+
+/// Chooses the points of a cube nearest to the mean of those that face alike: a thin body has two faces in it.
+/// \param begin, end  ranks
+void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end)
+{
+    const auto       positions = object.index().positionsByRank();
+    const glm::dvec3 first     = object.survey().normalOfRank(begin);
+    for (const bool alike : {true, false}) {
+        const auto isOf = [&](std::uint32_t rank) {
+            return (glm::dot(object.survey().normalOfRank(rank), first) >= 0) == alike;
+        };
+        glm::dvec3 sum{};
+        float      count = 0;
+        for (std::uint32_t rank = begin; rank < end; ++rank) {
+            if (!isOf(rank)) continue;
+            sum += positions[rank];
+            ++count;
+        }
+        if (count == 0) continue;
+        std::uint32_t nearest = begin;
+        double        least   = std::numeric_limits<double>::infinity();
+        for (std::uint32_t rank = begin; rank < end; ++rank) {
+            const glm::dvec3 d = positions[rank] - sum / double(count);
+            if (!isOf(rank) || glm::dot(d, d) >= least) continue;
+            least   = glm::dot(d, d);
+            nearest = rank;
+        }
+        level.isSite[nearest] = true;
+        level.share[nearest]  = count;
+    }
+}
+
+CurvatureNotes::Level levelOf(const SoftObject& object, double radius)
+{
+    CurvatureNotes::Level level;
+    level.isSite.resize(object.size());
+    const auto edges = object.index().cubes(kCube * radius);
+    for (std::size_t n = 0; n + 1 < edges.size(); ++n) addSites(level, object, edges[n], edges[n + 1]);
+    return level;
+}
+
+} // namespace
+
+std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
+                                            const glm::dvec3& outward, double radius)
+{
+    try {
+        const Ball              ball    = ballOf(object, place, std::numbers::sqrt2 * radius);
+        const TouchedSurface    surface = touchedSurface(object, {.point = place, .outward = outward}, ball);
+        std::vector<glm::dvec3> around, normals;
+        around.reserve(surface.size());
+        normals.reserve(surface.size());
+        for (std::size_t k = 0; k < surface.size(); ++k) {
+            around.push_back(surface.place(k));
+            normals.push_back(surface.normalAt(k));
+        }
+        return fitCurvature({around, normals}, surface.anchor, radius);
+    } catch (const Error&) { // a place without a surface
+        return {};
+    }
+}
+
+std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung)
+{
+    const double     radius = rungRadius(rung);
+    CurvatureNotes&  notes  = object.curvatureNotes();
+    std::unique_lock lock(notes.mutex);
+    auto             found = notes.levels.find(rung);
+    if (found == notes.levels.end()) found = notes.levels.emplace(rung, levelOf(object, radius)).first;
+    CurvatureNotes::Level&     level = found->second;
+    std::vector<std::size_t>   sites; // among the points
+    std::vector<std::uint32_t> missing;
+    for (std::size_t k = 0; k < points.ranks.size(); ++k) {
+        if (!level.isSite[points.ranks[k]]) continue;
+        sites.push_back(k);
+        if (!level.fits.contains(points.ranks[k])) missing.push_back(points.ranks[k]);
+    }
+    lock.unlock();
+    std::vector<std::optional<LocalCurvature>> fits(missing.size());
+    inParallel(missing.size(), 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t n = begin; n < end; ++n)
+            fits[n] = faceCurvature(object, object.index().positionsByRank()[missing[n]],
+                                    object.survey().normalOfRank(missing[n]), radius);
+    });
+    lock.lock();
+    for (std::size_t n = 0; n < missing.size(); ++n) level.fits.emplace(missing[n], fits[n]);
+    std::vector<CurvatureSite> result;
+    for (const std::size_t k : sites) {
+        auto fit = level.fits.at(points.ranks[k]);
+        if (!fit) continue;
+        if (glm::dot(fit->normal, points.normals[k]) < 0) fit = LocalCurvature{-fit->normal, -fit->tensor};
+        result.push_back({points.positions[k], *fit, double(level.share.at(points.ranks[k]))});
+    }
+    return result;
+}
+
+} // namespace palp

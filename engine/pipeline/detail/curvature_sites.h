@@ -1,0 +1,29 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/chart/curvature_field.h"
+#include "engine/cloud/soft_object.h"
+
+namespace palp {
+
+/// The points of a touched surface that have a place in the chart.
+struct LaidPoints {
+    std::span<const std::uint32_t> ranks;     ///< along the curve of the object's index
+    std::span<const ChartPoint>    positions; ///< [m] as many
+    std::span<const glm::dvec3>    normals;   ///< [1] as many, towards the finger
+};
+
+/// Returns the fits of one radius of the ladder at those sites of the object that are among the points. What is not known
+/// from earlier touches is fitted, and kept with the object.
+/// \param rung  see rungRadius()
+/// \thread any; starts threads
+[[nodiscard]] std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung);
+
+/// Returns the curvature of one face of the object about a place, within a radius [m]; empty where the points determine none.
+[[nodiscard]] std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
+                                                          const glm::dvec3& outward, double radius);
+
+} // namespace palp
