@@ -12,21 +12,13 @@ layout(push_constant) uniform Constants { LevelPush push; };
 layout(std430, binding = 0) readonly buffer Marks { uint marks[]; };
 layout(std430, binding = 1) writeonly buffer List { uint list[]; };
 
-const int kMostInvocations = 256;
-shared uint counts[kMostInvocations];
+uint markOf(int tile) { return marks[tile]; }
+void put(uint place, uint word) { list[place] = word; }
+
+#include "compute_shaders/jump_list.glsl"
 
 void main()
 {
-    int tiles = tilesX(push.level) * tilesZ(push.level);
-    int lane = int(gl_LocalInvocationID.x), lanes = int(gl_WorkGroupSize.x);
-    int stretch = (tiles + lanes - 1) / lanes, first = lane * stretch, end = min(tiles, first + stretch);
-    uint count = 0u;
-    for (int n = first; n < end; ++n) count += marks[n];
-    counts[lane] = count;
-    barrier();
-    uint at = 1u;
-    for (int n = 0; n < lane; ++n) at += counts[n];
-    if (lane == lanes - 1) list[0] = min(at - 1u + count, kMostListed);
-    for (int n = first; n < end; ++n)
-        if (marks[n] == 1u) list[at++] = uint(n);
+    uint count = listTiles(push.level);
+    if (gl_LocalInvocationIndex == gl_WorkGroupSize.x - 1u) list[0] = count;
 }

@@ -27,7 +27,7 @@ struct TailLevel {
 struct TailPush {
     uint first;  // level to begin with; the last one is solved at once
     uint levels; // of the tail
-    uint nodes;  // of all of them together
+    uint nodes;  // numbers of all of them together, what lies between them included
 };
 
 #ifdef __cplusplus

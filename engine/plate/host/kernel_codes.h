@@ -1,6 +1,7 @@
 #pragma once
 #include "compute_shaders/plate_kernels.spv.h"
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/rigidity_level.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "engine/compute/kernel.h"
 #include "engine/plate/host/host_kernels.h"
@@ -33,6 +34,8 @@ namespace palp::kernels {
     {                                                                                                                  \
         return PALPATE_CODE(spirv, nullptr, Push, buffers);                                                            \
     }
+#define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)                                        \
+    PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)                                         \
     template <class Real>                                                                                              \
     compute::KernelCode name()                                                                                         \

@@ -63,20 +63,27 @@ constexpr double kRimWork = 300, kStrongRimWork = 5000;
 /// Memory that the host writes for a buffer: the buffer itself where it is mapped, else memory that a list copies.
 class Staging {
 public:
-    Staging(compute::Context& context, const Buffer& target) : target_(&target)
+    Staging(compute::Context& context, const Buffer& target) : Staging(context, Binding(target, 0, target.bytes())) {}
+    Staging(compute::Context& context, const Binding& target) : target_(target)
     {
-        if (!target.mapped()) own_.emplace(context, target.name() + " from the host", target.bytes(), Intent::upload);
+        const Buffer& all = *target.buffer;
+        if (!all.mapped()) own_.emplace(context, all.name() + " from the host", target.bytes, Intent::upload);
     }
 
-    [[nodiscard]] std::span<float> floats() const { return (own_ ? *own_ : *target_).as<float>(); }
+    [[nodiscard]] std::span<float> floats() const
+    {
+        return own_
+                   ? own_->as<float>()
+                   : target_.buffer->as<float>().subspan(target_.offset / sizeof(float), target_.bytes / sizeof(float));
+    }
 
     void record(CommandList& list) const
     {
-        if (own_) list.copy(*own_, *target_);
+        if (own_) list.copy(*own_, 0, *target_.buffer, target_.offset, target_.bytes);
     }
 
 private:
-    const Buffer*         target_;
+    Binding               target_;
     std::optional<Buffer> own_;
 };
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/region_layout.h"
 #include "engine/plate/multigrid/detail/plate_tail.h"
@@ -201,15 +203,13 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
                 const Levels     levels(plate);
                 const TailLayout tail = tailLayout(levels.grids);
                 ASSERT_EQ(tail.first, 0u);
-                std::vector<float> rigidity, beds, divisor;
-                for (const RoughLevel& level : levels.levels) {
-                    const auto inverse = host::inverseDivisor(level.g, level.rigidity);
-                    const auto first = level.rigidity.begin(), second = first + std::ptrdiff_t(nodesOf(level.g));
-                    rigidity.insert(rigidity.end(), first, second);
-                    beds.insert(beds.end(), second, level.rigidity.end());
-                    divisor.insert(divisor.end(), inverse.begin(), inverse.end());
+                std::vector<float> rigidity(tail.nodes, -1.0F), divisor(tail.nodes, -1.0F); // -1 between the levels
+                for (std::size_t l = 0; l < levels.levels.size(); ++l) {
+                    const RoughLevel& level = levels.levels[l];
+                    std::ranges::copy(level.rigidity, rigidity.begin() + tail.levels[l].field);
+                    std::ranges::copy(host::inverseDivisor(level.g, level.rigidity),
+                                      divisor.begin() + tail.levels[l].field);
                 }
-                rigidity.insert(rigidity.end(), beds.begin(), beds.end());
                 const std::size_t coarsest = nodesOf(levels.levels.back().g);
                 const auto        inverse  = roughPairs(coarsest * coarsest, 35);
                 for (std::size_t first = 0; first < levels.levels.size(); ++first) {

@@ -4,11 +4,13 @@
 #include <cstdint>
 #include <vector>
 
+#include "compute_shaders/shared/rigidity_level.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "tests/plate/kernels/push_echo_aim.spv.h"
 #include "tests/plate/kernels/push_echo_level.spv.h"
 #include "tests/plate/kernels/push_echo_probe.spv.h"
 #include "tests/plate/kernels/push_echo_relax.spv.h"
+#include "tests/plate/kernels/push_echo_rigidity.spv.h"
 #include "tests/plate/kernels/push_echo_scalars.spv.h"
 #include "tests/plate/kernels/push_echo_smooth.spv.h"
 #include "tests/plate/kernels/push_echo_tail.spv.h"
@@ -104,6 +106,19 @@ TEST_F(PlatePushTest, EveryFieldOfAnArrayArrivesInItsPlace)
     const TailLevel& level = levels[1];
     EXPECT_EQ(words, Words(tail.first, tail.levels, tail.nodes, level.plate, level.field, level.tableX, level.tableZ,
                            level.w, level.force));
+}
+
+TEST_F(PlatePushTest, EveryFieldOfTheLevelsThatArePreparedTogetherArrives)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernel";
+    const RigidityPush               push{3U, 117U};
+    const std::vector<RigidityLevel> levels{{}, {kCoarse, 11, -12, 13, -14}};
+    std::vector<std::uint32_t>       words((sizeof(RigidityPush) + sizeof(RigidityLevel)) / 4);
+    const compute::Kernel            echoed(
+                   context(), {"push_echo_rigidity", push_echo_rigidity_spv, 2, int(sizeof(RigidityPush))}, {8, 8, 1});
+    dispatchOnce(echoed, {out(words), in(levels)}, push, {1, 1, 1});
+    const RigidityLevel& level = levels[1];
+    EXPECT_EQ(words, Words(push.levels, push.rows, level.plate, level.field, level.list, level.row, level.tileRow));
 }
 
 } // namespace

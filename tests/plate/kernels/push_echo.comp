@@ -2,11 +2,12 @@
 // Domain     one invocation
 // Reads      push
 // Writes     bits of the fields
-// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS, ECHO_AIM, ECHO_PROBE; ECHO_TAIL with an array of structs
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS, ECHO_AIM, ECHO_PROBE; ECHO_TAIL and ECHO_RIGIDITY with an array of structs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 
 #include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/rigidity_level.h"
 #include "compute_shaders/shared/tail_level.h"
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
@@ -29,6 +30,9 @@ layout(push_constant) uniform Constants { ProbePush push; };
 #elif defined(ECHO_TAIL)
 layout(push_constant) uniform Constants { TailPush push; };
 layout(std430, binding = 1) readonly buffer Levels { TailLevel levels[]; };
+#elif defined(ECHO_RIGIDITY)
+layout(push_constant) uniform Constants { RigidityPush push; };
+layout(std430, binding = 1) readonly buffer Levels { RigidityLevel levels[]; };
 #else // ECHO_SCALARS
 layout(push_constant) uniform Constants { ScalarsPush push; };
 #endif
@@ -69,6 +73,14 @@ void main()
 #elif defined(ECHO_TRANSFER)
     echo(push.fine);
     echo(push.coarse);
+#elif defined(ECHO_RIGIDITY)
+    echo(push.levels);
+    echo(push.rows);
+    echo(levels[1].plate);
+    echo(levels[1].field);
+    echo(levels[1].list);
+    echo(levels[1].row);
+    echo(levels[1].tileRow);
 #elif defined(ECHO_VECTOR)
     echo(push.nodes);
     echo(push.partials);

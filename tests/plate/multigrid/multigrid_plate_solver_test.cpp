@@ -345,8 +345,8 @@ TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
     };
     const PlateKernels fused(context(), Schedule::fused), onePassEach(context(), Schedule::passByPass);
     for (const Row& row :
-         {Row{64, {11, 8, 15, 4, 1}, 30}, Row{128, {15, 9, 22, 7, 4}, 41}, Row{256, {19, 10, 35, 10, 7}, 52},
-          Row{512, {23, 11, 51, 13, 10}, 63}, Row{1024, {27, 12, 70, 16, 13}, 74}}) {
+         {Row{64, {4, 1, 15, 4, 1}, 30}, Row{128, {4, 1, 22, 7, 4}, 41}, Row{256, {4, 1, 35, 10, 7}, 52},
+          Row{512, {4, 1, 51, 13, 10}, 63}, Row{1024, {4, 1, 70, 16, 13}, 74}}) {
         const Plate plate  = plateOf(row.cells, row.cells, {}, kLaws[0]);
         const auto  counts = MultigridPlateSolver(context(), fused, plate, {}).commands();
         EXPECT_EQ(counts.prepare, row.fused.prepare) << row.cells;
@@ -465,7 +465,8 @@ TEST_F(MultigridPlate, EveryEdgeOnEveryGroundAgreesWithTheReferenceUnderEverySch
         const PlateKernels kernels(context(), schedule);
         for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 3 : 61)
             for (const double foundation : {0.0, 1e-2, 1e6}) {
-                const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4], kEdges[code / 64]};
+                const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4],
+                                       kEdges[code / 64]};
                 Plate            plate = plateOf(26, 19, edges, kLaws[3]);
                 plate.foundation       = foundation;
                 if (whyUnsolvable(plate)) continue; // nothing holds it
@@ -508,9 +509,10 @@ TEST_F(MultigridPlate, AFoundationThatVariesAgreesWithTheReferenceUnderEverySche
         const PlateKernels kernels(context(), schedule);
         for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 11 : 61)
             for (const double stiffness : {0.1, 10.0}) {
-                const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4], kEdges[code / 64]};
-                const Plate      plate    = onBed(plateOf(40, 29, edges, kLaws[3]), stiffness);
-                const NodeField  load     = loadOn(plate.grid);
+                const PlateEdges    edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4],
+                                       kEdges[code / 64]};
+                const Plate         plate = onBed(plateOf(40, 29, edges, kLaws[3]), stiffness);
+                const NodeField     load  = loadOn(plate.grid);
                 const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
                 const PlateSolution found =
                     MultigridPlateSolver(context(), kernels, plate, {.tolerance = tightest()}).solve(load);

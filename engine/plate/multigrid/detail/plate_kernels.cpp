@@ -90,6 +90,8 @@ PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& s
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)                                               \
     .name = bySweeps(kernels::name(), shapes.shape),
+#define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)                                        \
+    .name = compute::Kernel(context, kernels::name(), shapes.shape),
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)                                         \
     .name = compute::Kernel(context, doubles ? kernels::name<double>() : kernels::name<float>(), shapes.shape),
 #include "compute_shaders/shared/plate_kernels.def"
@@ -118,6 +120,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
     .name = compute::Kernel(context, f64 ? kernels::name<double>(host) : kernels::name<float>(host), shapes.shape),
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
     });
@@ -128,7 +131,10 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
         all_->coarseInvert = compute::Kernel(context, kernels::coarseInvert<double>(host), shapes.alone);
     }
     if (chosen(smoother, schedule, context) == Smoother::exactRims) all_->rims.emplace(rimKernels(context, host, f64));
-    if (isFused(context, schedule, all_->smoothing.by)) all_->fused.emplace(fusedKernels(context, shapes, f64));
+    if (!isFused(context, schedule, all_->smoothing.by)) return;
+    all_->fused.emplace(fusedKernels(context, shapes, f64));
+    if (coarse && !f64)
+        all_->fused->prepareEnd = compute::Kernel(context, kernels::prepareEnd<double>(), shapes.reduce);
 }
 
 PlateKernels::~PlateKernels()                                  = default;

@@ -19,12 +19,13 @@ struct Smoothing {
 /// The kernels of compute_shaders/shared/plate_kernels.def by name, for one processor; those in two precisions compute
 /// in doubles where the processor has them.
 struct PlateKernels::All {
-    /// The cycle in fewer and larger passes, of which [n] has n + 1 sweeps before and after the correction; and conjugate
-    /// gradients.
+    /// The cycle in fewer and larger passes, of which [n] has n + 1 sweeps before and after the correction; conjugate
+    /// gradients; and what is prepared for a rigidity.
     struct Fused {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape) std::array<compute::Kernel, 2> name;
+#define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #include "compute_shaders/shared/plate_kernels.def"
     };
@@ -42,6 +43,7 @@ struct PlateKernels::All {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
     std::optional<ExactRims> rims{};  ///< if the smoother is Smoother::exactRims

@@ -15,6 +15,7 @@
 namespace palp {
 namespace {
 
+using compute::Binding;
 using compute::Buffer;
 using compute::CommandList;
 using compute::Groups;
@@ -37,6 +38,13 @@ std::size_t tilesOf(const shared::PlateLevel& g)
     return std::size_t(shared::tilesX(g)) * std::size_t(shared::tilesZ(g));
 }
 
+/// A part of a buffer that the host sees.
+template <class T>
+std::span<T> viewOf(const Binding& part)
+{
+    return part.buffer->as<T>().subspan(part.offset / sizeof(T), part.bytes / sizeof(T));
+}
+
 std::uint32_t partialsFor(std::size_t nodes)
 {
     return std::uint32_t(std::clamp<std::size_t>(nodes / kTermsPerSum, kTermsPerSum, kMostPartials));
@@ -47,7 +55,10 @@ std::uint32_t partialsFor(std::size_t nodes)
 PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& kernels, GridHierarchy grids,
                          std::uint32_t loads)
     : state(context, "state", kernels.realBytes() * shared::kStateWords * loads, Intent::processor), context_(context),
-      k(kernels), grids_(std::move(grids)), loads_(loads), partials_(partialsFor(nodesOf(level(0)))),
+      k(kernels), grids_(std::move(grids)), layout_(rigidityLayout(grids_)), loads_(loads),
+      partials_(partialsFor(nodesOf(level(0)))), rigidity_(floats("rigidity", layout_.numbers)),
+      divisor_(floats("divisor", layout_.numbers)), marks_(floats("marks", layout_.words)),
+      tiles_(floats("tiles", layout_.words)),
       band_(context, "band", kernels.coarseBytes() * bandSize(), Intent::processor),
       factor_(context, "factor", kernels.coarseBytes() * bandSize(), Intent::processor),
       lost_(floats("lost pivots", 1)), sums_(reals("partial sums", 2 * std::size_t(loads_) * partials_)),
@@ -67,6 +78,8 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
         const std::size_t most  = std::max<std::size_t>(2 * sharedByGroups(0).x, std::size_t(nodes.x) * nodes.y);
         groupSums_.emplace(reals("sums of workgroups", most * loads_));
         tickets_.emplace(context, "tickets", 4 * (std::size_t(loads_) + 2), Intent::processor);
+        layoutLevels_.emplace(context, "levels of rigidities", sizeof(shared::RigidityLevel) * levels.size(),
+                              Intent::processor);
     }
     uploadTables();
 }
@@ -112,14 +125,18 @@ std::vector<LevelBuffers> PlatePasses::makeLevels() const
         const std::string of    = " of level " + std::to_string(l);
         const std::size_t nodes = nodesOf(level(l)), field = fieldSize(l);
         const auto&       tables = grids_.levels[l];
-        made.push_back({floats("rigidity" + of, level(l).shapeAt == 0 ? nodes : 2 * nodes),
-                        floats("divisor" + of, nodes),
+        const auto&       at     = layout_.levels[l];
+        const auto        part   = [](const Buffer& all, int first, std::size_t count) {
+            return Binding(all, 4 * std::size_t(first), 4 * count);
+        };
+        made.push_back({part(rigidity_, at.field, level(l).shapeAt == 0 ? nodes : 2 * nodes),
+                        part(divisor_, at.field, nodes),
                         floats("table x" + of, std::max<std::size_t>(1, tables.tableX.size())),
                         floats("table z" + of, std::max<std::size_t>(1, tables.tableZ.size())),
                         floats("force" + of, field),
                         {floats("w0" + of, field), floats("w1" + of, field)},
-                        floats("marks" + of, tilesOf(level(l))),
-                        floats("tiles" + of, 1 + tilesOf(level(l))),
+                        part(marks_, at.list, tilesOf(level(l))),
+                        part(tiles_, at.list, 1 + tilesOf(level(l))),
                         floats("load" + of, field),
                         gradients_[l % 2],
                         gradients_[1 - l % 2],
@@ -134,16 +151,18 @@ void PlatePasses::uploadTables()
 {
     std::vector<Buffer> staging;
     CommandList         list(context_);
-    const auto          upload = [&](const std::vector<float>& from, const Buffer& to) {
+    const auto          upload = [&](const auto& from, const Buffer& to) {
         if (from.empty()) return;
-        staging.emplace_back(context_, "table from the host", 4 * from.size(), Intent::upload);
-        std::memcpy(staging.back().mapped(), from.data(), 4 * from.size());
+        const std::size_t bytes = sizeof(from[0]) * from.size();
+        staging.emplace_back(context_, "table from the host", bytes, Intent::upload);
+        std::memcpy(staging.back().mapped(), from.data(), bytes);
         list.copy(staging.back(), to);
     };
     for (std::size_t l = 0; l < levels.size(); ++l) {
         upload(grids_.levels[l].tableX, levels[l].tableX);
         upload(grids_.levels[l].tableZ, levels[l].tableZ);
     }
+    if (layoutLevels_) upload(layout_.levels, *layoutLevels_);
     if (zeroes_) list.fill(*zeroes_, 0);
     if (tickets_) list.fill(*tickets_, 0);
     for (const LevelBuffers& b : levels)
@@ -355,8 +374,10 @@ int PlatePasses::runFusedCycle(Recorder& pass, std::size_t l, int sweeps)
 // Runs a cycle from level l down in one workgroup, the answer to w[0].
 void PlatePasses::solveTail(Recorder& pass, std::size_t l, int sweeps, const Buffer& force)
 {
-    pass(k.fused->tail[std::size_t(sweeps - 1)], tail_->bindings(force, levels[l].w[0]), tail_->pushFrom(l),
-         tail_->groups());
+    pass(k.fused->tail[std::size_t(sweeps - 1)],
+         tail_->bindings({rigidity_, levels[tail_->first()].rigidity.offset},
+                         {divisor_, levels[tail_->first()].divisor.offset}, force, levels[l].w[0]),
+         tail_->pushFrom(l), tail_->groups());
     for (std::size_t n = l; n + 1 < levels.size(); ++n) countWork(n, 2 * sweeps + 1);
 }
 
@@ -430,6 +451,10 @@ void PlatePasses::takeFusedStep(Recorder& pass, std::size_t l, const Buffer& z, 
 
 void PlatePasses::prepareRigidity(Recorder& pass)
 {
+    if (tail_) {
+        prepareFused(pass);
+        return;
+    }
     for (std::size_t l = 0; l + 1 < levels.size(); ++l)
         pass(k.coarsen, {levels[l].rigidity, levels[l + 1].rigidity}, shared::TransferPush{level(l), level(l + 1)},
              k.coarsen.groupsOver(std::uint32_t(level(l + 1).cellsZ + 1), std::uint32_t(level(l + 1).cellsX + 1)));
@@ -443,7 +468,7 @@ void PlatePasses::prepareRigidity(Recorder& pass)
         pass(k.jumpMark, {b.rigidity, b.marks}, push,
              k.jumpMark.groupsOver(std::uint32_t(shared::tilesZ(level(l))), std::uint32_t(shared::tilesX(level(l)))));
         pass(k.jumpList, {b.marks, b.tiles}, push, {1, 1, 1});
-        pass.list.copy(b.tiles, 0, hostTiles_, 4 * l, 4);
+        pass.list.copy(tiles_, b.tiles.offset, hostTiles_, 4 * l, 4);
     }
     const shared::LevelPush coarsest{level(levels.size() - 1)};
     pass(k.assemble, {levels.back().rigidity, band_}, coarsest,
@@ -451,9 +476,25 @@ void PlatePasses::prepareRigidity(Recorder& pass)
                                std::uint32_t(nodesOf(coarsest.level))));
     pass(k.factor, {band_, factor_, lost_}, coarsest, {1, 1, 1});
     pass.list.copy(lost_, 0, hostTiles_, 4 * (levels.size() - 1), 4); // the coarsest level has no tiles
-    if (!tail_) return;
-    for (std::size_t l = tail_->first(); l + 1 < levels.size(); ++l)
-        tail_->copyLevel(pass.list, l, levels[l].rigidity, levels[l].divisor);
+}
+
+// Prepares the same in at most four dispatches. What the host reads is written where it reads it.
+void PlatePasses::prepareFused(Recorder& pass)
+{
+    const std::size_t          last = levels.size() - 1;
+    const shared::RigidityPush push{std::uint32_t(levels.size()), layout_.rows};
+    if (last > 0) {
+        const shared::PlateLevel& made   = level(std::min(last, std::size_t(shared::kDeep)));
+        const auto                groups = [](int cells) { return std::uint32_t(cells / shared::kOwnNodes + 1); };
+        pass(k.fused->coarsenLevels, {*layoutLevels_, levels[0].rigidity, rigidity_, *tickets_}, push,
+             {groups(made.cellsZ), groups(made.cellsX), 1});
+        const std::uint32_t across =
+            k.fused->divisorLevels.groupsOver(std::uint32_t(level(0).cellsZ + 1), 1, std::uint32_t(shared::kEntries)).x;
+        pass(k.fused->divisorLevels, {*layoutLevels_, rigidity_, divisor_, marks_}, push,
+             {across, layout_.rows + layout_.tileRows, 1});
+    }
+    pass(k.fused->prepareEnd, {*layoutLevels_, rigidity_, marks_, tiles_, band_, factor_, hostTiles_}, push,
+         {std::uint32_t(levels.size()), 1, 1});
     tail_->invertFactor(pass.list, factor_);
 }
 
@@ -461,7 +502,8 @@ void PlatePasses::enableSteps(CommandList& list) const
 {
     list.copy(hostArguments_, arguments_);
     if (jumps_ == Jumps::none) return;
-    for (std::size_t l = 0; l + 1 < levels.size(); ++l) list.copy(levels[l].tiles, 0, arguments_, tileArgument(l), 4);
+    for (std::size_t l = 0; l + 1 < levels.size(); ++l)
+        list.copy(tiles_, levels[l].tiles.offset, arguments_, tileArgument(l), 4);
 }
 
 void PlatePasses::iterateNested(Recorder& pass)
@@ -506,7 +548,7 @@ bool PlatePasses::factorRims(bool inDoubles, double workPerNode)
     }
     double left = workPerNode * double(nodes());
     for (std::size_t l = 0; l < last; ++l) {
-        if (!rims_[l].divide(level(l), levels[l].rigidity.as<float>(), levels[l].tiles.as<std::uint32_t>().data(),
+        if (!rims_[l].divide(level(l), viewOf<float>(levels[l].rigidity), viewOf<std::uint32_t>(levels[l].tiles).data(),
                              left))
             return false;
         left -= rims_[l].work();
@@ -516,7 +558,7 @@ bool PlatePasses::factorRims(bool inDoubles, double workPerNode)
         std::uint32_t           lost = 1;
         for (const bool doubles : {inDoubles, true}) {
             RimView              view = rims_[l].prepare(doubles);
-            std::array<void*, 3> buffers{&view, levels[l].rigidity.mapped(), &lost};
+            std::array<void*, 3> buffers{&view, viewOf<float>(levels[l].rigidity).data(), &lost};
             k.rims->factor({buffers.data(), &push, nullptr, {}, {}});
             std::memcpy(rimViews_[l].mapped(), &view, sizeof view);
             if (lost == 0) break;

@@ -12,17 +12,19 @@
 #include "engine/plate/multigrid/detail/grid_hierarchy.h"
 #include "engine/plate/multigrid/detail/plate_kernels.h"
 #include "engine/plate/multigrid/detail/plate_tail.h"
+#include "engine/plate/multigrid/detail/rigidity_layout.h"
 #include "engine/plate/multigrid/detail/rim.h"
 
 namespace palp {
 
 /// The memory of a level on the processor. `real` arrays are doubles where the processor has them.
 struct LevelBuffers {
-    compute::Buffer rigidity; ///< and behind it, if the plate has one, the shape of the foundation
-    compute::Buffer divisor, tableX, tableZ;
-    compute::Buffer force, w[2];  ///< of the cycle, floats
-    compute::Buffer marks, tiles; ///< where the rigidity jumps: a flag per tile; number of tiles, then their indices
-    compute::Buffer load;         ///< force of the nested iteration, floats
+    compute::Binding rigidity; ///< and behind it, if the plate has one, the shape of the foundation
+    compute::Binding divisor;
+    compute::Buffer  tableX, tableZ;
+    compute::Buffer  force, w[2];  ///< of the cycle, floats
+    compute::Binding marks, tiles; ///< where the rigidity jumps: a flag per tile; number of tiles, then their indices
+    compute::Buffer  load;         ///< force of the nested iteration, floats
 
     // Conjugate gradients run on one level after another, and all levels share the memory of the finest one's. An answer
     // and its residual change places from level to level: a level interpolates the answer of the next coarser one, and
@@ -142,21 +144,25 @@ private:
     [[nodiscard]] int runFusedCycle(Recorder& pass, std::size_t l, int sweeps);
     void takeFusedStep(Recorder& pass, std::size_t l, const compute::Buffer& z, int step, std::uint32_t begins,
                        float tolerance);
+    void prepareFused(Recorder& pass);
     void solveTail(Recorder& pass, std::size_t l, int sweeps, const compute::Buffer& force);
     void solveCoarsest(Recorder& pass, const compute::Buffer& force);
 
     compute::Context&        context_;
     const PlateKernels::All& k;
     GridHierarchy            grids_;
+    RigidityLayout           layout_;
     std::uint32_t            loads_, partials_;
 
-    std::vector<compute::Buffer>   gradients_; ///< the memory of conjugate gradients
-    std::optional<compute::Buffer> zeroes_;    ///< a deflection of zero, for the first sweep in red and black
+    compute::Buffer                rigidity_, divisor_, marks_, tiles_; ///< of all levels, see RigidityLayout
+    std::vector<compute::Buffer>   gradients_;                          ///< the memory of conjugate gradients
+    std::optional<compute::Buffer> zeroes_; ///< a deflection of zero, for the first sweep in red and black
     compute::Buffer                band_, factor_, lost_, sums_, arguments_, hostArguments_, hostTiles_;
     std::vector<Rim>               rims_;                ///< by level, where the kernels solve them
     std::vector<compute::Buffer>   rimViews_;            ///< a RimView each
     std::optional<PlateTail>       tail_;                ///< if the schedule is fused
     std::optional<compute::Buffer> groupSums_, tickets_; ///< likewise: see cg_last_group.glsl
+    std::optional<compute::Buffer> layoutLevels_;        ///< likewise
     Jumps                          jumps_              = Jumps::none;
     int                            dispatchesPerCycle_ = 0;
     std::map<std::array<std::uint32_t, 3>, std::size_t> argumentAt_; ///< groups -> byte offset in `arguments_`

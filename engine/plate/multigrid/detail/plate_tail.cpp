@@ -6,6 +6,7 @@
 #include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "engine/compute/context.h"
+#include "engine/plate/multigrid/detail/rigidity_layout.h"
 
 namespace palp {
 namespace {
@@ -43,21 +44,19 @@ TailLayout tailLayout(const GridHierarchy& grids)
            fitsLoops(grids.levels[layout.first - 1].plate) &&
            poolOf(grids, layout.first - 1) <= std::size_t(shared::kTailPool))
         --layout.first;
-    int field = 0, pool = 0;
+    const RigidityLayout all  = rigidityLayout(grids);
+    int                  pool = 0;
     for (std::size_t l = layout.first; l < grids.levels.size(); ++l) {
         const auto& level = grids.levels[l];
         const int   nodes = int(nodesOf(level.plate));
         const int   force = l == layout.first ? 0 : pool + nodes;
-        layout.levels.push_back(
-            {level.plate, field, int(layout.tablesX.size()), int(layout.tablesZ.size()), pool, force});
-        field += nodes;
+        layout.levels.push_back({level.plate, all.levels[l].field - all.levels[layout.first].field,
+                                 int(layout.tablesX.size()), int(layout.tablesZ.size()), pool, force});
         layout.tablesX.insert(layout.tablesX.end(), level.tableX.begin(), level.tableX.end());
         layout.tablesZ.insert(layout.tablesZ.end(), level.tableZ.begin(), level.tableZ.end());
         pool += l == layout.first ? nodes : 2 * nodes;
     }
-    layout.nodes = std::uint32_t(field);
-    for (shared::TailLevel& level : layout.levels)
-        if (level.plate.shapeAt != 0) level.plate.shapeAt = field;
+    layout.nodes = std::uint32_t(all.numbers) - std::uint32_t(all.levels[layout.first].field);
     for (auto* tables : {&layout.tablesX, &layout.tablesZ})
         if (tables->empty()) tables->push_back(0); // a buffer holds something
     return layout;
@@ -68,10 +67,6 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
     : k(kernels), layout_(tailLayout(grids)), loads_(loads),
       coarsestNodes_(std::uint32_t(nodesOf(grids.levels.back().plate))),
       levels_(context, "levels of the tail", sizeof(shared::TailLevel) * layout_.levels.size(), Intent::processor),
-      rigidity_(context, "rigidity of the tail",
-                4 * std::size_t(layout_.nodes) * (layout_.levels.front().plate.shapeAt == 0 ? 1 : 2),
-                Intent::processor),
-      divisor_(context, "divisor of the tail", 4 * std::size_t(layout_.nodes), Intent::processor),
       tableX_(context, "tables x of the tail", bytesOf(layout_.tablesX), Intent::processor),
       tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::processor),
       inverse_(context, "inverse of the coarsest level",
@@ -92,15 +87,6 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
     context.run(list);
 }
 
-void PlateTail::copyLevel(CommandList& list, std::size_t level, const Buffer& rigidity, const Buffer& divisor) const
-{
-    const std::size_t offset = 4 * std::size_t(at(level).field), bytes = divisor.bytes();
-    list.copy(rigidity, 0, rigidity_, offset, bytes);
-    list.copy(divisor, 0, divisor_, offset, bytes);
-    if (const int shapeAt = at(level).plate.shapeAt; shapeAt != 0)
-        list.copy(rigidity, bytes, rigidity_, offset + 4 * std::size_t(shapeAt), bytes);
-}
-
 void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
 {
     list.dispatch(k.coarseInvert, {factor, inverse_}, shared::LevelPush{layout_.levels.back().plate},
@@ -112,9 +98,10 @@ shared::TailPush PlateTail::pushFrom(std::size_t level) const
     return {std::uint32_t(level - layout_.first), std::uint32_t(layout_.levels.size()), layout_.nodes};
 }
 
-std::vector<compute::Binding> PlateTail::bindings(const Buffer& force, const Buffer& deflection) const
+std::vector<compute::Binding> PlateTail::bindings(const compute::Binding& rigidity, const compute::Binding& divisor,
+                                                  const Buffer& force, const Buffer& deflection) const
 {
-    return {levels_, rigidity_, divisor_, tableX_, tableZ_, inverse_, force, aside_, deflection};
+    return {levels_, rigidity, divisor, tableX_, tableZ_, inverse_, force, aside_, deflection};
 }
 
 } // namespace palp

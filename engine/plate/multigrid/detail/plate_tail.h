@@ -12,9 +12,9 @@ namespace palp {
 
 /// The coarse levels as plate_tail.comp reads them: next to each other, for one workgroup that runs a cycle alone.
 struct TailLayout {
-    std::size_t                    first = 0;        ///< level of the hierarchy that the tail begins with
-    std::vector<shared::TailLevel> levels;           ///< from there to the coarsest
-    std::uint32_t                  nodes = 0;        ///< of all of them
+    std::size_t                    first = 0; ///< level of the hierarchy that the tail begins with
+    std::vector<shared::TailLevel> levels;    ///< from there to the coarsest
+    std::uint32_t                  nodes = 0; ///< from the first one's first number to the end, see RigidityLayout
     std::vector<float>             tablesX, tablesZ; ///< transfer tables, level after level
 };
 
@@ -31,9 +31,6 @@ public:
     [[nodiscard]] std::size_t first() const noexcept { return layout_.first; } ///< level of the hierarchy
     [[nodiscard]] bool        holds(std::size_t level) const noexcept { return level >= layout_.first; }
 
-    /// Copies the rigidity and divisor, made by earlier commands of the list, of one of its levels but the coarsest.
-    void copyLevel(compute::CommandList& list, std::size_t level, const compute::Buffer& rigidity,
-                   const compute::Buffer& divisor) const;
     /// Inverts the coarsest level's matrix, of which `factor` holds the Cholesky factor.
     void invertFactor(compute::CommandList& list, const compute::Buffer& factor) const;
 
@@ -41,16 +38,16 @@ public:
     [[nodiscard]] compute::Groups  groups() const noexcept { return {1, 1, loads_}; }
 
     /// Bindings of plate_tail.comp.
-    [[nodiscard]] std::vector<compute::Binding> bindings(const compute::Buffer& force,
+    /// \param rigidity, divisor  of all levels from the tail's first on, see RigidityLayout
+    [[nodiscard]] std::vector<compute::Binding> bindings(const compute::Binding& rigidity,
+                                                         const compute::Binding& divisor, const compute::Buffer& force,
                                                          const compute::Buffer& deflection) const;
 
 private:
-    [[nodiscard]] const shared::TailLevel& at(std::size_t level) const { return layout_.levels[level - layout_.first]; }
-
     const PlateKernels::All& k;
     TailLayout               layout_;
     std::uint32_t            loads_, coarsestNodes_;
-    compute::Buffer          levels_, rigidity_, divisor_, tableX_, tableZ_, inverse_, aside_;
+    compute::Buffer          levels_, tableX_, tableZ_, inverse_, aside_;
 };
 
 } // namespace palp

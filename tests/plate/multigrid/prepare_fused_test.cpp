@@ -1,0 +1,126 @@
+#include <algorithm>
+#include <utility>
+
+#include "engine/compute/command_list.h"
+#include "engine/plate/multigrid/detail/plate_kernels.h"
+#include "engine/plate/multigrid/detail/plate_passes.h"
+#include "tests/plate/kernels/plate_fields.h"
+#include "tests/support/shader_fixture.h"
+
+// Tests of what is prepared for a rigidity in four dispatches, rigidity_levels.comp, divisor_levels.comp and
+// prepare_end.comp, against the passes that each prepare one thing on one level.
+
+namespace palp {
+namespace {
+
+using compute::Binding;
+using compute::Buffer;
+using compute::CommandList;
+using compute::Intent;
+
+class PrepareFused : public ShaderTest {
+protected:
+    /// All that is prepared but the inverse, as words.
+    struct Prepared {
+        std::vector<std::vector<std::uint32_t>> rigidity, divisor, tiles;
+        bool                                    jumps = false, tooSoft = false;
+    };
+
+    static Prepared prepareBy(Schedule schedule, const Plate& plate)
+    {
+        const PlateKernels kernels(context(), schedule);
+        PlatePasses        passes(context(), kernels.all(), gridHierarchy(plate, 1), 1);
+        const Binding&     finest = passes.levels[0].rigidity;
+        Buffer             given(context(), "given", finest.bytes, Intent::upload);
+        const auto&        D = plate.rigidity.values();
+        const auto&        s = plate.foundationShape.values();
+        std::transform(D.begin(), D.end(), given.as<float>().begin(), [](double value) { return float(value); });
+        std::transform(s.begin(), s.end(), given.as<float>().begin() + std::ptrdiff_t(D.size()),
+                       [](double value) { return float(value); });
+        CommandList list(context());
+        list.copy(given, 0, *finest.buffer, finest.offset, finest.bytes);
+        PlatePasses::Recorder pass{passes, list};
+        passes.prepareRigidity(pass);
+        list.end();
+        Prepared prepared;
+        for (int run = 0; run < 2; ++run) { // a second run must find everything ready for it
+            context().run(list);
+            prepared         = {};
+            prepared.jumps   = passes.foundJumps();
+            prepared.tooSoft = passes.isTooSoft();
+            for (std::size_t l = 0; l < passes.levels.size(); ++l) {
+                prepared.rigidity.push_back(words(passes.levels[l].rigidity));
+                if (l + 1 == passes.levels.size()) break; // the coarsest has neither
+                prepared.divisor.push_back(words(passes.levels[l].divisor));
+                auto tiles = words(passes.levels[l].tiles);
+                tiles.resize(1 + tiles[0]); // nothing is written behind the last
+                prepared.tiles.push_back(std::move(tiles));
+            }
+        }
+        return prepared;
+    }
+
+    static std::vector<std::uint32_t> words(const Binding& part)
+    {
+        Buffer      read(context(), "read", part.bytes, Intent::readback);
+        CommandList list(context());
+        list.copy(*part.buffer, part.offset, read, 0, part.bytes);
+        list.end();
+        context().run(list);
+        read.makeVisibleToHost();
+        const auto all = read.as<std::uint32_t>();
+        return {all.begin(), all.end()};
+    }
+
+    static std::vector<Plate> plates()
+    {
+        using enum Edge;
+        return {roughPlate(9, 12, {clamped, clamped, clamped, clamped}),                       // one level
+                onRoughBed(roughPlate(17, 13, {supported, free, clamped, supported}, 1, 1.3)), // odd cells
+                roughPlate(64, 64, {clamped, clamped, clamped, clamped}),                      // three
+                onRoughBed(roughPlate(131, 75, {free, clamped, free, free})),                  // more, odd ones
+                roughPlate(200, 33, {free, free, supported, clamped}, 1, 7),                   // x alone first
+                roughPlate(258, 259, {clamped, clamped, clamped, clamped}),                    // the last group goes on
+                onRoughBed(roughPlate(40, 300, {supported, supported, free, clamped}, 1.0, 0.7))};
+    }
+};
+
+TEST_F(PrepareFused, FourDispatchesPrepareTheSameBits)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernels";
+    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (!context().bitExact()) GTEST_SKIP() << "a driver may fuse the sums of each kernel as it likes";
+    for (const Plate& plate : plates()) {
+        SCOPED_TRACE(describe(plate));
+        const Prepared one = prepareBy(Schedule::fused, plate), each = prepareBy(Schedule::passByPass, plate);
+        EXPECT_TRUE(one.rigidity == each.rigidity);
+        EXPECT_TRUE(one.divisor == each.divisor);
+        EXPECT_TRUE(one.tiles == each.tiles);
+        EXPECT_EQ(one.jumps, each.jumps);
+        EXPECT_EQ(one.tooSoft, each.tooSoft);
+    }
+}
+
+/// Where the rigidity jumps the cycle is the same in both schedules, and ends with the coarsest level's factor.
+TEST_F(PrepareFused, PlatesThatJumpGetTheSameAnswerByEither)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernels";
+    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (!context().bitExact()) GTEST_SKIP() << "a driver may fuse the sums of each kernel as it likes";
+    using enum Edge;
+    const PlateKernels fused(context(), Schedule::fused), each(context(), Schedule::passByPass);
+    for (const Plate& plate : {onRoughBed(roughPlate(37, 22, {free, clamped, free, free})),
+                               roughPlate(64, 64, {clamped, clamped, clamped, clamped})}) {
+        SCOPED_TRACE(describe(plate));
+        NodeField load(plate.grid);
+        load(plate.grid.cellsX / 2, plate.grid.cellsZ / 3) = 1;
+        const PlateSolution a = MultigridPlateSolver(context(), fused, plate, {}).solve(load),
+                            b = MultigridPlateSolver(context(), each, plate, {}).solve(load);
+        EXPECT_EQ(a.deflection.values(), b.deflection.values());
+        EXPECT_EQ(a.report.converged, b.report.converged);
+        EXPECT_EQ(a.report.iterations, b.report.iterations);
+    }
+}
+
+} // namespace
+} // namespace palp
