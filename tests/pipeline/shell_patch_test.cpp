@@ -167,7 +167,7 @@ TEST(ShellPatch, FeelsHardlyAnyScatterOfThePoints)
     };
     const std::vector<double> quiet = feltAlong(ellipsoid(oval, 0), overOval);
     for (const double noise : {0.0, 0.3e-3}) {
-        // Measured: below 0.001, and 0.11 to 0.13 with noise. Along a crest the chart adds 0.24.
+        // Measured: below 0.001, and 0.11 to 0.13 with noise; along a crest, where the chart adds some, 0.24 and 0.38.
         const double most = noise > 0 ? 0.2 : 0.01;
         report("sphere", noise,
                stepsOf(feltAlong(ellipsoid(glm::dvec3(50e-3), noise),
@@ -176,7 +176,8 @@ TEST(ShellPatch, FeelsHardlyAnyScatterOfThePoints)
         report("tube", noise, stepsOf(feltAlong(sheet(tube, noise), [](double y) { return glm::dvec3(0, y, 80e-3); })),
                most);
         report("ridge", noise,
-               stepsOf(feltAlong(sheet(ridge, noise), [](double y) { return glm::dvec3(0, y, kCrest); })), most + 0.4);
+               stepsOf(feltAlong(sheet(ridge, noise), [](double y) { return glm::dvec3(0, y, kCrest); })),
+               noise > 0 ? 0.5 : 0.3);
         std::vector<double> scattered = feltAlong(ellipsoid(oval, noise), overOval);
         for (std::size_t n = 0; n < quiet.size(); ++n) scattered[n] -= quiet[n]; // what is felt of its shape
         report("ellipsoid", noise, stepsOf(scattered), most);
