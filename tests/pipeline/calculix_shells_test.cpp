@@ -204,7 +204,7 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
         if (kindOf(of.name) != Kind::curved) continue;
         const double felt = feltBy(Theory::shell, Edge::supported, of) / of.stiffness - 1;
         const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: spheres 0 to 4 %, ellipsoids and slope 3 to 5, at the shoulder 6 and 9, spots 2 to 8. What is
+        // Measured: spheres 0 to 4 %, ellipsoids and slope 3 to 5, at the shoulder 6 and 10, spots 2 to 8. What is
         // left has the sign of a body that gives way as a whole, which no window sees.
         const bool even = of.name == "sphere" || of.name == "ellipsoid" || of.name == "slope";
         EXPECT_LT(std::abs(felt), even ? 0.05 : 0.1) << of.name << ", " << of.thickness << " m";
@@ -218,7 +218,7 @@ TEST(CalculixShells, WhatIsNotLiesBetweenSupportedAndClampedEdges)
         if (kindOf(of.name) != Kind::held || of.name == "sheet") continue;
         EXPECT_LT(feltBy(Theory::shell, Edge::supported, of), of.stiffness) << of.name;
         EXPECT_NEAR(feltBy(Theory::shell, Edge::clamped, of) / of.stiffness, 1.03, 0.05)
-            << of.name << ": held so, -2 to 7 % off; the tube's window spans its length and not what is around";
+            << of.name << ": held so, -1.1 to 7 % off; the tube's window spans its length and not what is around";
     }
 }
 
