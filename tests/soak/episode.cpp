@@ -57,7 +57,7 @@ EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformati
     FaultyClock   clock(anyRate(chance), chance.bits());
     const double  solverRate = 20 * anyRate(chance);
     const auto    every      = std::uint64_t(chance.scaleFrom(10, 200)); // ticks
-    solver.begin(solverRate, 1.0 / 64); // most answers are older ones: ticks are what is attacked here
+    solver.begin(solverRate, 1.0 / 256); // most answers are older ones: ticks are what is attacked here
     std::optional<FaultyRecording> recording;
     if (chance.is(1.0 / 16)) recording.emplace(scene, std::uint64_t(chance.scaleFrom(64e3, 30e6)));
 
