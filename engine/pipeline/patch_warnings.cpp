@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <optional>
 
 #include <glm/geometric.hpp>
@@ -48,10 +49,26 @@ std::string withOneDecimal(double value)
     return text;
 }
 
-/// Adds what limits a shell, or what a plate that is no shell leaves out.
-void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings)
+/// Returns the stiffness of the membrane that a plate leaves out, over what else resists the slowest wave in the window: as
+/// the sphere that was fitted to the surface has it [1].
+double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material)
 {
-    constexpr double kSag = 0.25, kFolded = 0.5, kNearly = 0.95; // [1]
+    const double k    = patch.sphere.fit.curvature, h = patch.thickness, nu = material.poissonRatio;
+    const double D    = geometricMean(patch.plate.rigidity.values());
+    const double wave = 4 * std::pow(std::numbers::pi / bentSize(patch), 4);
+    return 12 * (1 - nu * nu) * D * k * k / (h * h) / (wave * D + settings.foundation);
+}
+
+/// Adds what limits a shell, or what a plate that is no shell leaves out.
+void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings,
+                  const Material& material)
+{
+    constexpr double kSag = 0.25, kFolded = 0.5, kNearly = 0.95, kFelt = 0.2; // [1]
+    if (settings.theory == Theory::plate && settings.neighbourhood == Neighbourhood::surface &&
+        membraneLeftOut(patch, settings, material) > kFelt)
+        result.push_back("the surface is curved, with a radius of " + formatQuantity(1 / patch.sphere.fit.curvature, "m") +
+                         ", and bent as if it were flat: the forces within it are left out, and may be felt; set theory "
+                         "shell");
     if (!patch.flatBecause.empty())
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;
@@ -121,7 +138,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (patch.sideUnsure)
         result.push_back("the cloud has no other side behind this place, so the finger's side is a guess (" +
                          directionText(patch.chart.frame.normal) + "); set --from");
-    addCurvature(result, patch, settings);
+    addCurvature(result, patch, settings, material);
     constexpr double kElsewhere = 0.5,
                      kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5
     const double away           = glm::length(patch.chart.origin - patch.contact.point);

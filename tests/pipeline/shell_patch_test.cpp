@@ -247,6 +247,28 @@ TEST(ShellPatch, SaysWhatLimitsIt)
     EXPECT_TRUE(warned(touchOf(ball, {0, 0, 18e-3}), kShell, "too deep"));
 }
 
+TEST(ShellPatch, APlateThatIsCurvedIsNoSilentOne)
+{
+    const char* const words = "bent as if it were flat";
+    const auto        cap   = [](double radius) {
+        return touchOf(sheet([=](double x, double y) { return std::sqrt(radius * radius - x * x - y * y) - radius; }),
+                       {}, asPlate());
+    };
+    // 12 (1 - nu^2) a^4 / (4 pi^4 h^2 R^2) is 0.2 at a radius of 561 mm.
+    EXPECT_TRUE(warned(cap(0.54), asPlate(), words));
+    EXPECT_FALSE(warned(cap(0.58), asPlate(), words));
+    const SoftObject dome = ellipsoid(glm::dvec3(50e-3), 0);
+    EXPECT_FALSE(warned(touchOf(dome, {0, 0, 50e-3}), kShell, words)) << "a shell";
+    PatchSettings onTissue = asPlate(); // E h / R^2 is 0.4 MPa/m
+    onTissue.foundation    = 1.8e6;
+    EXPECT_TRUE(warned(touchOf(dome, {0, 0, 50e-3}, onTissue), onTissue, words));
+    onTissue.foundation = 2.2e6;
+    EXPECT_FALSE(warned(touchOf(dome, {0, 0, 50e-3}, onTissue), onTissue, words));
+    PatchSettings papers = asPlate();
+    papers.neighbourhood = Neighbourhood::ball;
+    EXPECT_FALSE(warned(touchOf(dome, {0, 0, 50e-3}, papers), papers, words)) << "the paper's is flat on purpose";
+}
+
 TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
 {
     const Patch dome = touchOf(ellipsoid(glm::dvec3(50e-3), 0), {0, 0, 50e-3});
