@@ -9,7 +9,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
-#include "engine/pipeline/detail/shell_patch.h"
+#include "engine/pipeline/detail/shell_windows.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -93,6 +93,32 @@ MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& latti
     return {std::move(solved.whole), solved.responses[lattice.loads.size() / 2].work};
 }
 
+/// Returns ln c(e)/c(0) with its slopes in the window of a homogeneous shell of the mean rigidity and curvature.
+ComplianceTable::Entries windowOf(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
+                                  double tolerance)
+{
+    constexpr double  kLoose = 1e-2; // works are right to its square
+    ShellWindows&     kept   = *lattice.shells;
+    const ShellShape  shape  = meanShape(shell);
+    const std::size_t middle = lattice.loads.size() / 2;
+    {
+        const std::lock_guard lock(kept.mutex);
+        if (const auto found = kept.known.find(shape); found != kept.known.end()) return found->second;
+    }
+    const auto mean =
+        solver.solveFootprints(shellOfShape(shape, shell), lattice.loads, middle, std::max(tolerance, kLoose));
+    const auto               at = complianceOf(mean.responses[middle]);
+    ComplianceTable::Entries own{};
+    for (std::size_t n = 0; n < mean.responses.size(); ++n) {
+        own[n] = complianceOf(mean.responses[n]);
+        own[n].value -= at.value;
+    }
+    const std::lock_guard lock(kept.mutex);
+    if (kept.known.size() >= ShellWindows::kMost) kept.known.clear();
+    kept.known.emplace(shape, own);
+    return own;
+}
+
 } // namespace
 
 FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& given, int side, PlateSolver& solver)
@@ -128,7 +154,7 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
                     std::to_string(shape.side) + " x " + std::to_string(shape.side) + " footprints of radius " +
                     formatQuantity(shape.radius, "m") + "; expected at least " + formatQuantity(wanted, "m"));
 
-    FootprintLattice lattice{.shape = shape, .wholeObject = wholeObject};
+    FootprintLattice lattice{.shape = shape, .wholeObject = wholeObject, .shells = std::make_shared<ShellWindows>()};
     const auto       loadAt = [&](double x, double z) {
         return footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, shape.radius);
     };
@@ -214,19 +240,9 @@ MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, P
 MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
                           ComplianceTable& table)
 {
-    constexpr double         kLoose = 1e-2; // works are right to its square
-    const std::size_t        middle = lattice.loads.size() / 2;
-    FootprintSolution        solved = solver.solveFootprints(shell, lattice.loads, middle, tolerance);
-    ComplianceTable::Entries own{};
-    if (lattice.loads.size() > 1 && !lattice.wholeObject) {
-        const auto mean =
-            solver.solveFootprints(homogeneousOf(shell), lattice.loads, middle, std::max(tolerance, kLoose));
-        const auto at = complianceOf(mean.responses[middle]);
-        for (std::size_t n = 0; n < mean.responses.size(); ++n) {
-            own[n] = complianceOf(mean.responses[n]);
-            own[n].value -= at.value;
-        }
-    }
+    FootprintSolution solved = solver.solveFootprints(shell, lattice.loads, lattice.loads.size() / 2, tolerance);
+    const auto own = lattice.loads.size() > 1 && !lattice.wholeObject ? windowOf(shell, lattice, solver, tolerance)
+                                                                      : ComplianceTable::Entries{};
     return fillTable(std::move(solved), lattice, OverNode(shell.bending.rigidity), own, table);
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <memory>
 #include <vector>
 
 #include "engine/force/compliance_table.h"
@@ -7,6 +8,8 @@
 #include "engine/plate/plate_solver.h"
 
 namespace palp {
+
+struct ShellWindows;
 
 /// Size and number of a table's footprints: a constant of the scene.
 struct FootprintTable {
@@ -31,6 +34,7 @@ struct FootprintLattice {
     std::vector<double>                   middles{}; ///< ln c in the middle of those windows
     bool   wholeObject = false; ///< the window spans the object: what its borders do to a footprint stays in
     double feltRadius  = 0;     ///< root mean square radius of the bending energy, in the middle rung [m]
+    std::shared_ptr<ShellWindows> shells{}; ///< of homogeneous ones in this window, as they are met
 
     /// Returns the entries for a plate whose rigidity has this geometric mean [N m]: linear between rungs, the last one
     /// beyond them.
@@ -85,7 +89,7 @@ struct MiddleSolution {
                                         double tolerance, ComplianceTable& table);
 
 /// Does the same on a shell. What the window does to footprints off its middle, and the phase of the grid, are those of
-/// a shell of the mean rigidity and curvature, which is solved as well.
+/// a shell of the mean rigidity and curvature, to a step of 2 %, which is solved as well and kept with the lattice.
 [[nodiscard]] MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
                                         double tolerance, ComplianceTable& table);
 

@@ -16,8 +16,8 @@ namespace palp {
 PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)
 {
     constexpr double kMargin = 1.04, kFinest = 0.25; // diagonals to the side of the window; fingertips to a cell [1]
-    constexpr int    kFewest = 256, kTogether = 16;          // cells; a multiple that a multigrid can coarsen
-    const int        most   = settings.theory == Theory::shell ? kFewest : 512; // cells that the solver converges on
+    constexpr int    kFewest = 256, kTogether = 16;  // cells; a multiple that a multigrid can coarsen
+    const int        most    = settings.theory == Theory::shell ? kFewest : 512; // cells that the solver converges on
     PatchSettings    settled = settings;
     if (settings.windowOf == WindowOf::dent) {
         const auto lengths = dentLengths(object, settings);

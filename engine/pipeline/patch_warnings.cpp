@@ -53,7 +53,7 @@ std::string withOneDecimal(double value)
 /// the sphere that was fitted to the surface has it [1].
 double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material)
 {
-    const double k    = patch.sphere.fit.curvature, h = patch.thickness, nu = material.poissonRatio;
+    const double k = patch.sphere.fit.curvature, h = patch.thickness, nu = material.poissonRatio;
     const double D    = geometricMean(patch.plate.rigidity.values());
     const double wave = 4 * std::pow(std::numbers::pi / bentSize(patch), 4);
     return 12 * (1 - nu * nu) * D * k * k / (h * h) / (wave * D + settings.foundation);
@@ -66,9 +66,10 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
     constexpr double kSag = 0.25, kFolded = 0.5, kNearly = 0.95, kFelt = 0.2; // [1]
     if (settings.theory == Theory::plate && settings.neighbourhood == Neighbourhood::surface &&
         membraneLeftOut(patch, settings, material) > kFelt)
-        result.push_back("the surface is curved, with a radius of " + formatQuantity(1 / patch.sphere.fit.curvature, "m") +
-                         ", and bent as if it were flat: the forces within it are left out, and may be felt; set theory "
-                         "shell");
+        result.push_back(
+            "the surface is curved, with a radius of " + formatQuantity(1 / patch.sphere.fit.curvature, "m") +
+            ", and bent as if it were flat: the forces within it are left out, and may be felt; set theory "
+            "shell");
     if (!patch.flatBecause.empty())
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;

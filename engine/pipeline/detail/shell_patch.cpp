@@ -19,14 +19,6 @@ double lengthRoot(const Material& material)
     return std::sqrt(material.thickness) / std::pow(12 * (1 - nu * nu), 0.25);
 }
 
-/// Returns the mean of a field.
-double meanOf(const NodeField& field)
-{
-    double sum = 0;
-    for (const double value : field.values()) sum += value;
-    return sum / double(field.values().size());
-}
-
 double meanOfSquares(const NodeField& field)
 {
     double sum = 0;
@@ -143,21 +135,6 @@ Shell shellOf(const Patch& patch)
             curvature(&CurvatureField::z),
             curvature(&CurvatureField::xz),
             patch.sheared};
-}
-
-Shell homogeneousOf(const Shell& shell)
-{
-    const PlateGrid& grid   = shell.bending.grid;
-    Shell            mean   = shell;
-    mean.bending.rigidity   = NodeField(grid, geometricMean(shell.bending.rigidity.values()));
-    mean.membraneCompliance = NodeField(grid, geometricMean(shell.membraneCompliance.values()));
-    mean.curvatureX         = NodeField(grid, meanOf(shell.curvatureX));
-    mean.curvatureZ         = NodeField(grid, meanOf(shell.curvatureZ));
-    mean.curvatureXZ        = NodeField(grid, meanOf(shell.curvatureXZ));
-    if (shell.bending.foundationShape.values().empty()) return mean;
-    mean.bending.foundation *= geometricMean(shell.bending.foundationShape.values());
-    mean.bending.foundationShape = {};
-    return mean;
 }
 
 void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings)

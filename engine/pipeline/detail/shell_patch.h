@@ -18,7 +18,4 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
 /// crosses it; a supported one cuts the window from a larger body; a clamped one holds it in its plane as well.
 [[nodiscard]] PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept;
 
-/// Returns the shell whose rigidity, compliance and curvature are throughout the means of this one.
-[[nodiscard]] Shell homogeneousOf(const Shell& shell);
-
 } // namespace palp
