@@ -11,7 +11,7 @@ namespace palp::bench {
 /// One comparison: Palpate and a peer do the same work. A number that is not known is empty, and null in JSON.
 struct BenchRow {
     std::string kind;               ///< new_map, new_load, contrast, jacobi, update, gather, grid_map, memory, batch,
-                                    ///< table, dispatches
+                                    ///< table, shell, dispatches
     std::string           map;      ///< of the rigidity; empty where there is none
     std::optional<int>    nodes;    ///< a side
     std::string           accuracy; ///< discretisation, 1e-6, exact

@@ -16,6 +16,7 @@
 #include "engine/tools/bench/outside_peers.h"
 #include "engine/tools/bench/plate_bench.h"
 #include "engine/tools/bench/point_bench.h"
+#include "engine/tools/bench/shell_bench.h"
 #include "engine/tools/bench/table_bench.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/named_option.h"
@@ -42,6 +43,7 @@ std::vector<std::string> allCases()
     std::vector<std::string> names = plateCases();
     names.insert(names.end(), pointCases().begin(), pointCases().end());
     names.insert(names.end(), tableCases().begin(), tableCases().end());
+    names.insert(names.end(), shellCases().begin(), shellCases().end());
     names.insert(names.end(), dispatchCases().begin(), dispatchCases().end());
     return names;
 }
@@ -150,11 +152,13 @@ BenchReport measure(const BenchOptions& o)
         for (BenchRow& row : measurePoints(cases, o.solver, nodes, o.runs, onStep))
             report.rows.push_back(std::move(row));
     }
-    if (wants(tableCases())) {
-        const std::vector<int> nodes = o.nodes.empty() ? std::vector<int>{65, 129} : o.nodes;
-        for (BenchRow& row : measureTables(o.solver, nodes, o.maps, o.runs, onStep))
+    const std::vector<int> ofTables = o.nodes.empty() ? std::vector<int>{65, 129} : o.nodes;
+    if (wants(tableCases()))
+        for (BenchRow& row : measureTables(o.solver, ofTables, o.maps, o.runs, onStep))
             report.rows.push_back(std::move(row));
-    }
+    if (wants(shellCases()))
+        for (BenchRow& row : measureShells(o.solver, ofTables, o.maps, o.runs, onStep))
+            report.rows.push_back(std::move(row));
     return report;
 }
 
@@ -198,16 +202,16 @@ void addBenchCommand(CLI::App& app)
         ->add_option(
             "--cases", o->cases,
             "what to measure, separated by commas: new_map, new_load, contrast, jacobi, memory, batch, update, gather, "
-            "grid_map, table, dispatches [all]")
+            "grid_map, table, shell, dispatches [all]")
         ->delimiter(',');
     bench
         ->add_option("--nodes", o->nodes, "nodes a side of the square grids, 33 to 1025, one more than a multiple of 4")
         ->delimiter(',');
     bench
-        ->add_option(
-            "--maps", o->maps,
-            "rigidities of new_map, new_load, contrast and table, separated by commas: linear, hyperbolic, wart, "
-            "disc_100, disc_0.1, disc_1000, disc_1e5, discs [all; of table linear, wart, disc_100]")
+        ->add_option("--maps", o->maps,
+                     "rigidities of new_map, new_load, contrast, table and shell, separated by commas: linear, "
+                     "hyperbolic, wart, "
+                     "disc_100, disc_0.1, disc_1000, disc_1e5, discs [all; of table and shell linear, wart, disc_100]")
         ->delimiter(',');
     bench
         ->add_option("--schedule", o->schedule,

@@ -1,0 +1,116 @@
+#include "engine/tools/bench/shell_bench.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/pipeline/compliance_table_solve.h"
+#include "engine/tools/bench/bench_plates.h"
+#include "engine/tools/bench/cpu_time.h"
+
+namespace palp::bench {
+namespace {
+
+constexpr double     kRadius    = 4e-3; // of a footprint, and from one to the next [m]
+constexpr double     kTolerance = 1e-4; // of a scene [1]
+constexpr double     kTarget    = 1e-4; // of a compliance [1]
+constexpr double     kLengths   = 8;    // over which dents die away, in the window [1]
+constexpr double     kThickness = 1e-3; // [m]
+constexpr int        kMostNodes = 129;  // a side, beyond which no session solves tables
+constexpr PlateEdges kSupported{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
+
+/// Returns a shell with the rigidity of a plate, as curved as a sphere.
+/// \param times  a curvature over that whose length goes eight times into the window [1]
+Shell sphereOf(const Plate& plate, double times)
+{
+    const double length = plate.grid.sizeX() / kLengths;
+    const double k = times * kThickness / (std::sqrt(12 * (1 - std::pow(plate.poissonRatio, 2))) * length * length);
+    NodeField    membrane(plate.grid); // 1/(E h) = h^2 / (12 (1 - nu^2) D)
+    for (std::size_t n = 0; n < membrane.values().size(); ++n)
+        membrane.values()[n] =
+            kThickness * kThickness / (12 * (1 - std::pow(plate.poissonRatio, 2)) * plate.rigidity.values()[n]);
+    return {plate, membrane, kSupported, NodeField(plate.grid, k), NodeField(plate.grid, k), NodeField(plate.grid)};
+}
+
+double largestError(const FootprintSolution& found, const FootprintSolution& truth)
+{
+    double most = 0;
+    for (std::size_t n = 0; n < truth.responses.size(); ++n)
+        most = std::max(most, std::abs(found.responses[n].work / truth.responses[n].work - 1));
+    return most;
+}
+
+std::vector<BenchRow> measureShell(const Map& map, int nodes, int side, int runs, PlateSolver& solver)
+{
+    Plate plate                    = plateOf(map, nodes);
+    plate.edges                    = kSupported;
+    Plate even                     = plate;
+    even.rigidity                  = NodeField(plate.grid, kSoftest);
+    const FootprintLattice lattice = solveLattice(even, {kRadius, side, 1e9}, solver, kTolerance);
+    const Shell            shell   = sphereOf(plate, 1);
+
+    double             times = 1;
+    ComplianceTable    table;
+    std::optional<int> steps;
+    const auto         bend = [&](const auto& what) {
+        steps = solveTable(what, lattice, solver, kTolerance, table).solution.report.iterations;
+    };
+    const std::vector<Timing> timings = takeTurns({{"a flat plate", {[&] { bend(plate); }}},
+                                                   {"again", {[&] { bend(shell); }}},
+                                                   {"new", {[&] { bend(sphereOf(plate, times *= 1.03)); }}}},
+                                                  runs);
+    PlateSolver               reference("reference");
+    const auto                middle = lattice.loads.size() / 2;
+    const double              error  = largestError(solver.solveFootprints(shell, lattice.loads, middle, kTolerance),
+                                                    reference.solveFootprints(shell, lattice.loads, middle, kTolerance));
+
+    std::vector<BenchRow> rows;
+    for (const std::size_t n : {1, 2}) {
+        BenchRow row;
+        row.kind       = "shell";
+        row.map        = map.name;
+        row.nodes      = nodes;
+        row.accuracy   = "1e-4 of c";
+        row.target     = kTarget;
+        row.loads      = side * side;
+        row.peer       = "a flat plate";
+        row.peerMs     = timings.front().total;
+        row.palpateMs  = timings[n].total;
+        row.hidden     = timings[n].hidden;
+        row.tolerance  = kTolerance;
+        row.iterations = steps;
+        row.error      = error;
+        row.note       = std::to_string(side * side) + " loads, a mean curvature " +
+                   (n == 1 ? "met before" : "met for the first time");
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+} // namespace
+
+const std::vector<std::string>& shellCases()
+{
+    static const std::vector<std::string> names{"shell"};
+    return names;
+}
+
+std::vector<BenchRow> measureShells(const std::string& solver, const std::vector<int>& nodes,
+                                    const std::vector<std::string>& maps, int runs, const OnStep& onStep)
+{
+    const std::vector<std::string> chosen =
+        maps.empty() ? std::vector<std::string>{"linear", "wart", "disc_100"} : maps;
+    PlateSolver           opened(solver);
+    std::vector<BenchRow> rows;
+    const std::size_t     total = nodes.size() * chosen.size() * 2;
+    std::size_t           done  = 0;
+    for (const int n : nodes)
+        for (const std::string& map : chosen)
+            for (const int side : {3, 7}) {
+                onStep(done++, total);
+                if (n < 65 || n > kMostNodes) continue;
+                for (BenchRow& row : measureShell(mapNamed(map), n, side, runs, opened)) rows.push_back(std::move(row));
+            }
+    return rows;
+}
+
+} // namespace palp::bench
