@@ -59,10 +59,10 @@ std::optional<Vector6> quadricOf(std::span<const Sighting> seen, std::span<const
     Vector6          right       = Vector6::Zero();
     for (std::size_t n = 0; n < seen.size(); ++n) {
         const double weight = seen[n].share * weights[n];
-        normal.selfadjointView<Eigen::Lower>().rankUpdate(seen[n].row, weight);
+        normal.noalias() += (weight * seen[n].row) * seen[n].row.transpose();
         right += weight * seen[n].height * seen[n].row;
     }
-    const Eigen::LDLT<Matrix6> factors(normal.selfadjointView<Eigen::Lower>());
+    const Eigen::LDLT<Matrix6> factors(normal);
     const Vector6              pivots = factors.vectorD();
     if (!(pivots.minCoeff() > kDetermined * pivots.maxCoeff())) return {};
     return factors.solve(right);

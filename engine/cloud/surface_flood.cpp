@@ -71,7 +71,7 @@ std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, dou
 }
 
 std::span<const std::uint32_t> SurfaceFlood::reachIn(std::span<const std::uint32_t> ball, const glm::dvec3& centre,
-                                                     const std::optional<glm::dvec3>& outward)
+                                                     const std::optional<glm::dvec3>& outward, double sparser)
 {
     const SurfaceSurvey& survey = object_.survey();
     inBall_                     = ball;
@@ -84,7 +84,7 @@ std::span<const std::uint32_t> SurfaceFlood::reachIn(std::span<const std::uint32
     double longest = 0; // [m] step
     for (const std::uint32_t point : inBall_) {
         places_.push_back(object_.positions()[point]);
-        steps_.push_back(kStep * survey.spacing(point));
+        steps_.push_back(kStep * sparser * survey.spacing(point));
         longest = std::max(longest, steps_.back());
     }
     const std::size_t first = *start(centre, outward);

@@ -18,6 +18,16 @@ namespace {
 /// Side of the cubes that have a site on each face, over the radius of the fits [1]; the index takes it to 1.4 more or less.
 constexpr double kCube = 0.5;
 
+/// Returns how many points of a ball a fit needs: some hundred say how a clean surface bends, and of noisy ones as many as
+/// keep what noise adds below 0.004 of the inverse radius, a twentieth of what may bend within it.
+/// \param noise  of the points [m]
+std::size_t enoughFor(double noise, double radius)
+{
+    constexpr double kFewest = 600, kMost = 1e6, kSlope = 17 / 0.004; // points; the same; root of 2 pi 9.5^2, over that share
+    const double     wanted = kSlope * noise / radius;
+    return std::size_t(std::clamp(2 * wanted * wanted, kFewest, kMost));
+}
+
 /// Chooses the points of a cube nearest to the mean of those that face alike: a thin body has two faces in it.
 /// \param begin, end  ranks
 void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end)
@@ -64,8 +74,9 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
                                             const glm::dvec3& outward, double radius)
 {
     try {
-        const Ball              ball    = ballOf(object, place, std::numbers::sqrt2 * radius);
-        const TouchedSurface    surface = touchedSurface(object, {.point = place, .outward = outward}, ball);
+        const double         noise   = object.survey().noise(object.index().nearest(place, 1).front().point);
+        const Ball           ball    = ballOf(object, place, std::numbers::sqrt2 * radius, enoughFor(noise, radius));
+        const TouchedSurface surface = pieceOf(object, {.point = place, .outward = outward}, ball);
         std::vector<glm::dvec3> around, normals;
         around.reserve(surface.size());
         normals.reserve(surface.size());
@@ -73,7 +84,7 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
             around.push_back(surface.place(k));
             normals.push_back(surface.normalAt(k));
         }
-        return fitCurvature({around, normals}, surface.anchor, radius);
+        return fitCurvature({around, normals}, place, radius);
     } catch (const Error&) { // a place without a surface
         return {};
     }

@@ -137,7 +137,7 @@ bool isOneSheet(const TouchedSurface& surface, const WholeBall& whole, const Bal
 {
     constexpr double   kSquare = 2, kSteep = 2.9, kNoisy = 8; // [spacings], [spacings], [standard deviations of noise]
     constexpr int      kMostSquares = 1024;                   // along a side
-    const double       widest = whole.widest, noise = whole.mostNoise, radius = ball.radius;
+    const double       widest = ball.sparser * whole.widest, noise = whole.mostNoise, radius = ball.radius;
     const int          side = std::clamp(int(2 * radius / (kSquare * widest)), 1, kMostSquares);
     const Frame        axes = Frame::about(glm::normalize(whole.first));
     std::vector<float> low(std::size_t(side * side), std::numeric_limits<float>::max()); // [m] heights in each square
@@ -209,6 +209,18 @@ Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius)
     return ball;
 }
 
+Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius, std::size_t enough)
+{
+    Ball ball{{}, {}, centre, radius};
+    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
+    const EvenShare chosen = EvenShare::of(ball.ranks.size(), enough);
+    const auto      all    = double(ball.ranks.size());
+    std::erase_if(ball.ranks, [&](std::uint32_t rank) { return !chosen.has(rank); });
+    ball.sparser = std::sqrt(all / double(std::max<std::size_t>(1, ball.ranks.size())));
+    object.index().pointsOf(ball.ranks, ball.points);
+    return ball;
+}
+
 double spacingAt(const SoftObject& object, const glm::dvec3& place)
 {
     object.survey().expectSurface();
@@ -217,25 +229,26 @@ double spacingAt(const SoftObject& object, const glm::dvec3& place)
     return here > kUneven * all || all > kUneven * here ? here : all;
 }
 
-TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, const Ball& ball)
+TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const Ball& ball)
 {
     object.survey().expectSurface();
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
-    const double        spacing = spacingAt(object, contact.point), noise = object.survey().noise(nearest);
-    const auto          finished = [&](TouchedSurface surface) {
-        surface.spacing = spacing;
-        surface.noise   = noise;
-        describe(surface, contact.point, ball.radius);
-        return surface;
-    };
-    const auto whole = wholeBall(object, contact, ball, nearest);
-    if (whole) {
+    if (const auto whole = wholeBall(object, contact, ball, nearest)) {
         TouchedSurface surface(object, ball, whole->first, whole->least);
-        if (isOneSheet(surface, *whole, ball)) return finished(std::move(surface));
+        if (isOneSheet(surface, *whole, ball)) return surface;
     }
     SurfaceFlood flood(object);
-    const auto   numbers = flood.reachIn(ball.points, contact.point, contact.outward);
-    return finished(TouchedSurface(object, ball, numbers, flood.normals()));
+    const auto   numbers = flood.reachIn(ball.points, contact.point, contact.outward, ball.sparser);
+    return {object, ball, numbers, flood.normals()};
+}
+
+TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, const Ball& ball)
+{
+    TouchedSurface surface = pieceOf(object, contact, ball);
+    surface.spacing        = spacingAt(object, contact.point);
+    surface.noise          = object.survey().noise(object.index().nearest(contact.point, 1).front().point);
+    describe(surface, contact.point, ball.radius);
+    return surface;
 }
 
 } // namespace palp

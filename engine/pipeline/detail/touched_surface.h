@@ -17,13 +17,16 @@ namespace palp {
 struct Ball {
     std::vector<std::uint32_t>
         ranks; ///< along the curve of the object's index, along which neighbours are side by side
-    std::vector<std::uint32_t> points;     ///< of the object
-    glm::dvec3                 centre{};   ///< [m]
-    double                     radius = 0; ///< [m]
+    std::vector<std::uint32_t> points;      ///< of the object
+    glm::dvec3                 centre{};    ///< [m]
+    double                     radius  = 0; ///< [m]
+    double                     sparser = 1; ///< spacing of these points over that of all there are [1]
 };
 
 /// Gathers the points of an object within a radius of a place [m].
 [[nodiscard]] Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius);
+/// Gathers an even share of some `enough` of them, where they are more than twice as many.
+[[nodiscard]] Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius, std::size_t enough);
 
 /// Chooses an even share of an object's points, the same ones wherever the finger is. Ranks along the curve times the
 /// golden ratio are spread evenly over the unit interval: so are, over the surface, those that fall into a part of it.
@@ -116,10 +119,13 @@ private:
     std::vector<glm::dvec3>     normals_{}; ///< the same [1]
 };
 
-/// Finds the piece around a contact. Where the points of the ball face alike and nowhere lie one over the other, they are
-/// the piece; elsewhere a flood finds it, which costs some ten times as much.
+/// Finds the piece around a contact: its points and their normals. Where the points of the ball face alike and nowhere lie
+/// one over the other, they are the piece; elsewhere a flood finds it, which costs some ten times as much.
 /// \param ball  of the object's points, about the contact; the answer reads it as long as it lives
 /// \throws Error if the cloud has fewer than seven points or most of them coincide
+[[nodiscard]] TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const Ball& ball);
+
+/// Finds the piece and all that describes it.
 [[nodiscard]] TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, const Ball& ball);
 
 /// Returns the typical distance of neighbouring points at a place [m]: the cloud's, unless the density there is more
