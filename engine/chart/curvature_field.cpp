@@ -193,13 +193,15 @@ ChartTensor regressionAt(const ChartPoint& place, std::span<const Sited> sites, 
 
 using Lattice = std::vector<ChartTensor>; ///< row by row along z
 
-constexpr double kAround = 1.0; ///< radius of the regression over that of the fits [1]: some ten sites
+constexpr double kAround =
+    1.0; ///< radius of the regression over that of the fits [1]: some ten sites, three of a survey
 
 /// Finds the curvature by the fits of one rung on a lattice over the window; empty without any.
-Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const CurvatureSites& sitesOf, int rung)
+Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const CurvatureSites& sitesOf, int rung,
+                  FitsFor what)
 {
     std::vector<Sited> sites;
-    for (const CurvatureSite& site : sitesOf(rung))
+    for (const CurvatureSite& site : sitesOf(rung, what))
         sites.push_back({site.place, inChart(site.here, frame), site.share});
     if (sites.empty()) return {};
     Lattice lattice;
@@ -226,8 +228,8 @@ Lattice latticeBetween(const PatchWindow& window, int side, const Frame& frame, 
 {
     const double  rung    = rungOf(radius);
     const int     below   = int(std::floor(rung));
-    Lattice       lattice = latticeOf(window, side, frame, sites, below);
-    const Lattice wider   = latticeOf(window, side, frame, sites, below + 1);
+    Lattice       lattice = latticeOf(window, side, frame, sites, below, FitsFor::field);
+    const Lattice wider   = latticeOf(window, side, frame, sites, below + 1, FitsFor::field);
     if (lattice.empty() || wider.empty()) return wider;
     for (std::size_t n = 0; n < lattice.size(); ++n)
         for (double ChartTensor::*part : {&ChartTensor::x, &ChartTensor::z, &ChartTensor::xz})
@@ -261,7 +263,7 @@ std::optional<double> radiusFor(const PatchWindow& window, const Frame& frame, c
     const double  coarse = std::max(least, kSurveyShare * std::max(window.grid.sizeX(), window.grid.sizeZ()));
     const double  radius = std::clamp(std::cbrt(cube / kSurveyError), coarse, std::max(coarse, most));
     const int     rung   = int(std::lround(rungOf(radius)));
-    const Lattice survey = latticeOf(window, kSurvey, frame, sites, rung);
+    const Lattice survey = latticeOf(window, kSurvey, frame, sites, rung, FitsFor::survey);
     if (survey.empty()) return {};
     const Bend   bend      = bendOf(survey, cube / std::pow(rungRadius(rung), 3));
     const double felt      = settings.lengthRoot / std::sqrt(bend.typical);

@@ -50,8 +50,11 @@ struct CurvatureSite {
     double         share = 1; ///< of the surface that it stands for, among others of its radius
 };
 
+/// What fits are for: the field, or only the radius of its fits, for which a quarter as many do.
+enum class FitsFor { field, survey };
+
 /// Returns the fits of one rung in and around a window.
-using CurvatureSites = std::function<std::vector<CurvatureSite>(int rung)>;
+using CurvatureSites = std::function<std::vector<CurvatureSite>(int rung, FitsFor what)>;
 
 /// Returns the radius of a rung of the ladder of radii [m]. Fits are made with these alone, so that those of other windows
 /// can be taken; a window asks for the two rungs about its own radius.

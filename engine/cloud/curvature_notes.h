@@ -4,6 +4,7 @@
 #include <mutex>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include <glm/mat3x3.hpp>
@@ -29,8 +30,9 @@ struct CurvatureNotes {
         std::unordered_map<std::uint32_t, std::optional<LocalCurvature>> fits;
     };
 
-    std::mutex           mutex;
-    std::map<int, Level> levels; ///< by their place on the ladder of radii
+    std::mutex mutex;
+    std::map<std::pair<int, bool>, Level>
+        levels; ///< by their place on the ladder of radii, and whether they are a survey's
 };
 
 } // namespace palp

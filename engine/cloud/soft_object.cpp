@@ -71,6 +71,8 @@ SoftObject SoftObject::withMaterial(const Material& material) const
     SoftObject other = *this;
     other.material_  = material;
     other.coarse_    = coarseShapes();
+    if (material.thickness != material_.thickness) // the sheet's faces are told apart by it
+        other.curvatureNotes_ = std::make_shared<CurvatureNotes>();
     return other;
 }
 

@@ -14,6 +14,7 @@
 #include "engine/cloud/surface_flood.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/detail/other_face.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/touched_surface.h"
 #include "engine/pipeline/detail/whole_object.h"
@@ -265,26 +266,38 @@ bool projectWhole(Patch& patch, const TouchedSurface& surface)
     return found == surface.size();
 }
 
-/// Lays a piece of the ball flat, by the sphere's map, by the exponential map, or by both in parts.
+/// Finds the places of a piece's points, by the sphere's map, by the exponential map, or by both in parts.
+std::vector<std::optional<ChartPoint>> placesOf(const Patch& patch, const SoftObject& object,
+                                                const TouchedSurface& surface, const PatchSettings& settings)
+{
+    std::vector<std::optional<ChartPoint>> places(surface.size());
+    if (patch.unrolled > 0) places = unroll(patch, object, surface, settings);
+    if (patch.unrolled == 1) return places;
+    for (std::size_t k = 0; k < surface.size(); ++k) {
+        if (!(glm::dot(surface.normalAt(k), surface.normal) > 0)) continue;
+        const auto onSphere = patch.chart.project(surface.place(k));
+        if (onSphere && places[k])
+            places[k] = ChartPoint{std::lerp(onSphere->x, places[k]->x, patch.unrolled),
+                                   std::lerp(onSphere->z, places[k]->z, patch.unrolled)};
+        else if (patch.unrolled == 0)
+            places[k] = onSphere;
+    }
+    return places;
+}
+
+/// Lays a piece of the ball flat. An object that the window spans is unrolled up to its rim, not around it.
 Laid layPiece(Patch& patch, const SoftObject& object, const Ball& ball, const TouchedSurface& surface,
               const PatchSettings& settings)
 {
-    std::vector<std::optional<ChartPoint>> unrolled;
-    if (patch.unrolled > 0) unrolled = unroll(patch, object, surface, settings);
+    const auto        places = placesOf(patch, object, surface, settings);
+    std::vector<bool> behind(surface.size());
+    if (settings.windowOf == WindowOf::object)
+        behind = onOtherFace(surface, places, patch.chart.frame.normal, patch.thickness);
     std::vector<bool> known(ball.points.size());
     Laid              laid;
     for (std::size_t k = 0; k < surface.size(); ++k) {
-        std::optional<ChartPoint> position;
-        if (patch.unrolled > 0) position = unrolled[k];
-        if (patch.unrolled < 1 && glm::dot(surface.normalAt(k), surface.normal) > 0) {
-            const auto onSphere = patch.chart.project(surface.place(k));
-            if (onSphere && position)
-                position = ChartPoint{std::lerp(onSphere->x, position->x, patch.unrolled),
-                                      std::lerp(onSphere->z, position->z, patch.unrolled)};
-            else if (patch.unrolled == 0)
-                position = onSphere;
-        }
-        if (!position) continue;
+        const auto& position = places[k];
+        if (!position || behind[k]) continue;
         known[surface.inBall(k)] = true;
         laid.touched.push_back(surface.rank(k));
         laid.normals.push_back(surface.normalAt(k));

@@ -106,7 +106,7 @@ PatchWindow windowAt(double x)
 /// Fits about one point of each square of half a radius, wherever the window is.
 CurvatureSites sitesOn(const Points& points)
 {
-    return [&points, known = std::map<int, std::vector<CurvatureSite>>()](int rung) mutable {
+    return [&points, known = std::map<int, std::vector<CurvatureSite>>()](int rung, FitsFor) mutable {
         if (const auto found = known.find(rung); found != known.end()) return found->second;
         std::map<std::pair<int, int>, std::vector<std::size_t>> squares;
         const double                                            side = rungRadius(rung) / 2;

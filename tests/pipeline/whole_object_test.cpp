@@ -211,6 +211,61 @@ TEST(WholeObject, ADishBendsAboutItsStemHoweverItsPointsAreDrawn)
     EXPECT_LT(most / least - 1, 0.02) << "points drawn anew";
 }
 
+/// A lobe of two faces that meet at a sharp rim, held at one end, and the same sheet by the points of its middle.
+SoftObject lobeOf(double halfThickness, unsigned seed)
+{
+    constexpr double                       kLong = 18e-3, kWide = 14e-3;
+    std::mt19937_64                        bits(seed);
+    std::uniform_real_distribution<double> along(-1, 1);
+    std::vector<glm::dvec3>                points;
+    std::vector<double>                    shares;
+    while (points.size() < (halfThickness > 0 ? 20000 : 10000)) {
+        const double x = along(bits), y = along(bits), rest = 1 - x * x - y * y;
+        if (rest < 0) continue;
+        const double side = points.size() % 2 == 0 ? 1 : -1;
+        points.emplace_back(kWide * x, kLong * y, side * halfThickness * std::sqrt(rest));
+        shares.push_back(kWide * x < -6e-3);
+    }
+    std::vector<double> moduli(points.size(), kModulus);
+    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
+                      {.thickness = 3e-3, .poissonRatio = 0.45})
+        .withHeld(std::move(shares));
+}
+
+TEST(WholeObject, OfATwoFacedLobeOnlyTheTouchedFaceBends)
+{
+    PlateSolver host("host");
+    for (const Theory theory : {Theory::plate, Theory::shell})
+        for (const double x : {0.0, 9e-3}) {
+            PatchSettings settings   = kWhole;
+            settings.theory          = theory;
+            settings.footprintRadius = 2.5e-3;
+            const double     high    = 1.5e-3 * std::sqrt(1 - std::pow(x / 14e-3, 2));
+            const Patch      lobe    = deform(lobeOf(1.5e-3, 1), {{x, 0, high}, {0, 0, 1}}, settings, host);
+            const Patch      sheet   = deform(lobeOf(0, 2), {{x, 0, 0}, {0, 0, 1}}, settings, host);
+            const PlateGrid& grid    = lobe.plate.grid;
+            EXPECT_TRUE(lobe.report.converged);
+            EXPECT_EQ(lobe.report.solver, "host");
+            std::size_t frayed = 0; // nodes more than two cells on the wrong side of the border
+            for (int i = 0; i < grid.nodesX(); ++i)
+                for (int j = 0; j < grid.nodesZ(); ++j) {
+                    const ChartPoint at{lobe.window.corner.x + i * grid.spacingX,
+                                        lobe.window.corner.z + j * grid.spacingZ};
+                    const glm::dvec3 place =
+                        lobe.chart.origin + at.x * lobe.chart.frame.east + at.z * lobe.chart.frame.north;
+                    const double out     = std::hypot(place.x / 14e-3, place.y / 18e-3) - 1;
+                    const bool   covered = lobe.covered(i, j) > 0.5;
+                    frayed += covered ? out * 14e-3 > 2 * grid.spacingX : out * 18e-3 < -2 * grid.spacingX;
+                }
+            EXPECT_EQ(frayed, 0U) << name(theory) << " at " << x;
+            // The faces slope and the way over them is longer, and a border is found to half a cell.
+            EXPECT_NEAR(lobe.compliance / sheet.compliance, 1, 0.06) << name(theory) << " at " << x;
+
+            std::printf("  %s at %g: c %.4g, of a sheet %.4g, %.0f ms\n", name(theory), x, lobe.compliance,
+                        sheet.compliance, lobe.times.total());
+        }
+}
+
 TEST(WholeObject, SettingsSettleOnce)
 {
     const SoftObject strip = sheetOf(isInStrip, isStripsRoot, 1);

@@ -16,21 +16,28 @@ namespace palp {
 namespace {
 
 /// Side of the cubes that have a site on each face, over the radius of the fits [1]; the index takes it to 1.4 more or less.
-constexpr double kCube = 0.5;
+/// With 0.75 in place of 0.5 a field has half as many, and a tube of noisy points is felt three times as uneven.
+constexpr double kCube = 0.5, kSurveyCube = 1;
+
+/// Area of a cube's points over its side's from which on they have a site [1]: of many cubes the surface cuts off but a
+/// corner. With 0.25 a noisy ridge is felt a third more uneven.
+constexpr double kCorner = 0.1;
 
 /// Returns how many points of a ball a fit needs: some hundred say how a clean surface bends, and of noisy ones as many as
 /// keep what noise adds below 0.004 of the inverse radius, a twentieth of what may bend within it.
 /// \param noise  of the points [m]
 std::size_t enoughFor(double noise, double radius)
 {
-    constexpr double kFewest = 600, kMost = 1e6, kSlope = 17 / 0.004; // points; the same; root of 2 pi 9.5^2, over that share
-    const double     wanted = kSlope * noise / radius;
+    constexpr double kFewest = 600, kMost = 1e6,
+                     kSlope = 17 / 0.004; // points; the same; root of 2 pi 9.5^2, over that share
+    const double wanted     = kSlope * noise / radius;
     return std::size_t(std::clamp(2 * wanted * wanted, kFewest, kMost));
 }
 
 /// Chooses the points of a cube nearest to the mean of those that face alike: a thin body has two faces in it.
 /// \param begin, end  ranks
-void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end)
+void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end,
+              double leastArea)
 {
     const auto       positions = object.index().positionsByRank();
     const glm::dvec3 first     = object.survey().normalOfRank(begin);
@@ -40,12 +47,14 @@ void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint3
         };
         glm::dvec3 sum{};
         float      count = 0;
+        double     area  = 0; // [m^2]
         for (std::uint32_t rank = begin; rank < end; ++rank) {
             if (!isOf(rank)) continue;
             sum += positions[rank];
             ++count;
+            area += object.survey().spacingOfRank(rank) * object.survey().spacingOfRank(rank);
         }
-        if (count == 0) continue;
+        if (count == 0 || area < leastArea) continue;
         std::uint32_t nearest = begin;
         double        least   = std::numeric_limits<double>::infinity();
         for (std::uint32_t rank = begin; rank < end; ++rank) {
@@ -59,12 +68,14 @@ void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint3
     }
 }
 
-CurvatureNotes::Level levelOf(const SoftObject& object, double radius)
+CurvatureNotes::Level levelOf(const SoftObject& object, double radius, FitsFor what)
 {
     CurvatureNotes::Level level;
     level.isSite.resize(object.size());
-    const auto edges = object.index().cubes(kCube * radius);
-    for (std::size_t n = 0; n + 1 < edges.size(); ++n) addSites(level, object, edges[n], edges[n + 1]);
+    const double side  = (what == FitsFor::field ? kCube : kSurveyCube) * radius; // [m]
+    const auto   edges = object.index().cubes(side);
+    for (std::size_t n = 0; n + 1 < edges.size(); ++n)
+        addSites(level, object, edges[n], edges[n + 1], kCorner * side * side);
     return level;
 }
 
@@ -74,13 +85,14 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
                                             const glm::dvec3& outward, double radius)
 {
     try {
-        const double         noise   = object.survey().noise(object.index().nearest(place, 1).front().point);
-        const Ball           ball    = ballOf(object, place, std::numbers::sqrt2 * radius, enoughFor(noise, radius));
-        const TouchedSurface surface = pieceOf(object, {.point = place, .outward = outward}, ball);
+        const double            noise   = object.survey().noise(object.index().nearest(place, 1).front().point);
+        const std::size_t       enough  = enoughFor(noise, radius);
+        const Ball              ball    = ballOf(object, place, std::numbers::sqrt2 * radius);
+        const TouchedSurface    surface = pieceOf(object, {.point = place, .outward = outward}, ball, enough);
+        const EvenShare         chosen  = EvenShare::of(surface.size(), enough);
         std::vector<glm::dvec3> around, normals;
-        around.reserve(surface.size());
-        normals.reserve(surface.size());
         for (std::size_t k = 0; k < surface.size(); ++k) {
+            if (!chosen.has(surface.rank(k))) continue;
             around.push_back(surface.place(k));
             normals.push_back(surface.normalAt(k));
         }
@@ -90,13 +102,14 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
     }
 }
 
-std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung)
+std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung, FitsFor what)
 {
     const double     radius = rungRadius(rung);
     CurvatureNotes&  notes  = object.curvatureNotes();
     std::unique_lock lock(notes.mutex);
-    auto             found = notes.levels.find(rung);
-    if (found == notes.levels.end()) found = notes.levels.emplace(rung, levelOf(object, radius)).first;
+    const std::pair  key(rung, what == FitsFor::survey);
+    auto             found = notes.levels.find(key);
+    if (found == notes.levels.end()) found = notes.levels.emplace(key, levelOf(object, radius, what)).first;
     CurvatureNotes::Level&     level = found->second;
     std::vector<std::size_t>   sites; // among the points
     std::vector<std::uint32_t> missing;

@@ -20,7 +20,8 @@ struct LaidPoints {
 /// from earlier touches is fitted, and kept with the object.
 /// \param rung  see rungRadius()
 /// \thread any; starts threads
-[[nodiscard]] std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung);
+[[nodiscard]] std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung,
+                                                        FitsFor what);
 
 /// Returns the curvature of one face of the object about a place, within a radius [m]; empty where the points determine none.
 [[nodiscard]] std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,

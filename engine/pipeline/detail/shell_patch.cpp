@@ -40,7 +40,7 @@ std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject
                                             const PatchSettings& settings)
 {
     return curvatureField(patch.window, patch.chart.frame,
-                          [&](int rung) { return curvatureSites(object, points, rung); },
+                          [&](int rung, FitsFor what) { return curvatureSites(object, points, rung, what); },
                           {.spacing    = patch.spacing,
                            .noise      = noiseOf(object, points),
                            .mostRadius = settings.window / 2,
@@ -93,13 +93,17 @@ std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& 
 }
 
 /// Returns whether the faces of one sheet bulge apart, or towards each other, so that its middle surface is less than half
-/// as curved as the one that is touched.
+/// as curved as the one that is touched. Two fits say so, before those of a field are made.
 bool isLensAtContact(const Patch& patch, const SoftObject& object)
 {
-    constexpr double kHalf  = 0.5;
+    // Radius of the fits: over what bends, half the length of a shell that fills it; [spacings]; what keeps the error that noise
+    // makes, 9.5 noise spacing / radius^3, below 0.5 1/m [m]
+    constexpr double kHalf = 0.5, kShare = 0.0625, kSpacings = 5, kNoisy = 19;
     const auto       behind = otherFaceBehind(patch, object);
     if (!behind) return false;
-    const double     radius = patch.curvature->radius;
+    const double     bent   = bentSize(patch); // [m]
+    const double     quiet  = std::cbrt(kNoisy * patch.noise * patch.spacing);
+    const double     radius = std::max(kSpacings * patch.spacing, std::clamp(quiet, kShare * bent, bent / 2));
     const glm::dvec3 normal = patch.chart.frame.normal;
     const auto       front  = faceCurvature(object, patch.chart.origin, normal, radius);
     const auto       back   = faceCurvature(object, *behind, -normal, radius);
@@ -145,14 +149,12 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
     if (settings.neighbourhood == Neighbourhood::ball)
         return stayFlat("the points of a ball are no surface with a curvature; set neighbourhood surface");
     if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
-    patch.curvature = findCurvature(patch, object, points, settings);
-    if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
-    if (isLensAtContact(patch, object)) {
-        patch.curvature.reset();
+    if (isLensAtContact(patch, object))
         return stayFlat(
             "the object is one thin sheet whose two faces bulge to either side, so that its middle is flatter "
             "than the face that is touched; give the points of one face, laid on the middle, if it is curved");
-    }
+    patch.curvature = findCurvature(patch, object, points, settings);
+    if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
 
     const Material& material = object.material();
     const int       middle   = settings.cells / 2;

@@ -137,7 +137,7 @@ bool isOneSheet(const TouchedSurface& surface, const WholeBall& whole, const Bal
 {
     constexpr double   kSquare = 2, kSteep = 2.9, kNoisy = 8; // [spacings], [spacings], [standard deviations of noise]
     constexpr int      kMostSquares = 1024;                   // along a side
-    const double       widest = ball.sparser * whole.widest, noise = whole.mostNoise, radius = ball.radius;
+    const double       widest = whole.widest, noise = whole.mostNoise, radius = ball.radius;
     const int          side = std::clamp(int(2 * radius / (kSquare * widest)), 1, kMostSquares);
     const Frame        axes = Frame::about(glm::normalize(whole.first));
     std::vector<float> low(std::size_t(side * side), std::numeric_limits<float>::max()); // [m] heights in each square
@@ -209,18 +209,6 @@ Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius)
     return ball;
 }
 
-Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius, std::size_t enough)
-{
-    Ball ball{{}, {}, centre, radius};
-    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
-    const EvenShare chosen = EvenShare::of(ball.ranks.size(), enough);
-    const auto      all    = double(ball.ranks.size());
-    std::erase_if(ball.ranks, [&](std::uint32_t rank) { return !chosen.has(rank); });
-    ball.sparser = std::sqrt(all / double(std::max<std::size_t>(1, ball.ranks.size())));
-    object.index().pointsOf(ball.ranks, ball.points);
-    return ball;
-}
-
 double spacingAt(const SoftObject& object, const glm::dvec3& place)
 {
     object.survey().expectSurface();
@@ -229,7 +217,7 @@ double spacingAt(const SoftObject& object, const glm::dvec3& place)
     return here > kUneven * all || all > kUneven * here ? here : all;
 }
 
-TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const Ball& ball)
+TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const Ball& ball, std::size_t enough)
 {
     object.survey().expectSurface();
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
@@ -238,7 +226,22 @@ TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const B
         if (isOneSheet(surface, *whole, ball)) return surface;
     }
     SurfaceFlood flood(object);
-    const auto   numbers = flood.reachIn(ball.points, contact.point, contact.outward, ball.sparser);
+    if (ball.ranks.size() <= 2 * enough) {
+        const auto numbers = flood.reachIn(ball.points, contact.point, contact.outward);
+        return {object, ball, numbers, flood.normals()};
+    }
+    constexpr double kThin = 0.5; // longest step over the thickness [1]
+    const double step = SurfaceFlood::kStep * object.survey().spacing(nearest) / (kThin * object.material().thickness);
+    const auto   all  = double(ball.ranks.size());
+    const EvenShare chosen =
+        EvenShare::of(ball.ranks.size(), std::max(enough, std::size_t(std::min(all, all * step * step))));
+    std::vector<std::uint32_t> some, points; // numbers in the ball; of the object
+    for (std::uint32_t k = 0; k < ball.ranks.size(); ++k)
+        if (chosen.has(ball.ranks[k])) some.push_back(k), points.push_back(ball.points[k]);
+    const double               sparser = std::sqrt(all / double(std::max<std::size_t>(1, some.size())));
+    std::vector<std::uint32_t> numbers;
+    for (const std::uint32_t k : flood.reachIn(points, contact.point, contact.outward, sparser))
+        numbers.push_back(some[k]);
     return {object, ball, numbers, flood.normals()};
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -17,16 +18,13 @@ namespace palp {
 struct Ball {
     std::vector<std::uint32_t>
         ranks; ///< along the curve of the object's index, along which neighbours are side by side
-    std::vector<std::uint32_t> points;      ///< of the object
-    glm::dvec3                 centre{};    ///< [m]
-    double                     radius  = 0; ///< [m]
-    double                     sparser = 1; ///< spacing of these points over that of all there are [1]
+    std::vector<std::uint32_t> points;     ///< of the object
+    glm::dvec3                 centre{};   ///< [m]
+    double                     radius = 0; ///< [m]
 };
 
 /// Gathers the points of an object within a radius of a place [m].
 [[nodiscard]] Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius);
-/// Gathers an even share of some `enough` of them, where they are more than twice as many.
-[[nodiscard]] Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius, std::size_t enough);
 
 /// Chooses an even share of an object's points, the same ones wherever the finger is. Ranks along the curve times the
 /// golden ratio are spread evenly over the unit interval: so are, over the surface, those that fall into a part of it.
@@ -121,9 +119,12 @@ private:
 
 /// Finds the piece around a contact: its points and their normals. Where the points of the ball face alike and nowhere lie
 /// one over the other, they are the piece; elsewhere a flood finds it, which costs some ten times as much.
+/// \param enough  points; where they are more than twice as many the flood takes an even share of them, but none so sparse
+///                that a step could pass through the sheet
 /// \param ball  of the object's points, about the contact; the answer reads it as long as it lives
 /// \throws Error if the cloud has fewer than seven points or most of them coincide
-[[nodiscard]] TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const Ball& ball);
+[[nodiscard]] TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const Ball& ball,
+                                     std::size_t enough = std::numeric_limits<std::size_t>::max() / 2);
 
 /// Finds the piece and all that describes it.
 [[nodiscard]] TouchedSurface touchedSurface(const SoftObject& object, const Contact& contact, const Ball& ball);
