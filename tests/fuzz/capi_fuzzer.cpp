@@ -53,7 +53,7 @@ palpate_object* objectOf(const std::vector<double>& rows, const char* scene)
     points.count            = rows.size() / 4;
     points.positions        = rows.data();
     points.position_stride  = 4 * sizeof(double);
-    points.stiffness        = rows.data() + 3;
+    points.stiffness        = rows.empty() ? nullptr : rows.data() + 3;
     points.stiffness_stride = 4 * sizeof(double);
     palpate_object* object  = nullptr;
     palp::fuzzExpect(isDone(palpate_object_from_points(&points, scene, &object)) == (object != nullptr));
