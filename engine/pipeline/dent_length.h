@@ -10,6 +10,9 @@ namespace palp {
 /// Widths of a patch window in lengths of a dent, from which its edges change 1 % or less of what a dome feels [1].
 inline constexpr double kLocalWindow = 8;
 
+/// Sag of a surface over the width of its patch window up to which the theory of shallow shells holds [1].
+inline constexpr double kMostSag = 0.25;
+
 /// Lengths over which dents die away by themselves on an object, at places spread evenly over it.
 struct DentLengths {
     double least = 0, typical = 0, most = 0; ///< the median and the extremes [m]
@@ -26,5 +29,11 @@ struct DentLengths {
 /// \thread pure
 /// \source the shallow shell's l of Reissner 1946, with a foundation added to the membrane's
 [[nodiscard]] std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings);
+
+/// Returns how wide the patch window of WindowOf::dent is [m]: as most places of the object ask for, or as the settings say
+/// where nothing ends a dent; of shells no wider than kMostSag allows at all but a twentieth of the places; and at least four
+/// radii of the fingertip.
+/// \note as dentLengths()
+[[nodiscard]] double dentWindow(const SoftObject& object, const PatchSettings& settings);
 
 } // namespace palp

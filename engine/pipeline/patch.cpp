@@ -20,9 +20,8 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
     const int        most    = settings.theory == Theory::shell ? kFewest : 512; // cells that the solver converges on
     PatchSettings    settled = settings;
     if (settings.windowOf == WindowOf::dent) {
-        const auto lengths = dentLengths(object, settings);
-        settled.windowOf   = WindowOf::contact;
-        if (lengths) settled.window = std::max(lengths->window(), 4 * settings.footprintRadius);
+        settled.windowOf = WindowOf::contact;
+        settled.window   = dentWindow(object, settings);
     }
     if (settings.windowOf != WindowOf::object) return settled;
     const double wanted = 2 * (kMargin * object.cloud().bounds().diagonal() + 3 * object.spacing()); // [m]

@@ -49,6 +49,24 @@ std::string withOneDecimal(double value)
     return text;
 }
 
+/// Says by how much a window that is too deep may change the answer.
+///
+/// Measured against a window of a sag of 25 % (h 1 mm, R 20 mm): at 30, 50 and 100 % a sphere is felt softer by 0.03 to
+/// 0.05 %, the tip of a long ellipsoid by -0.4, 1.4 and 3.8 %: a dent dies away before it comes where the surface is steep.
+/// What is curved much more one way lets a dent run on, and the wider window is felt softer: the side of an ellipsoid of
+/// three to one by 11, 33 and 44 %, a tube by 16, 77 and 145 %, less than in proportion to the excess.
+/// \param sag    over the width of the window [1]
+/// \param ratio  of the lesser curvature to the larger [1]
+std::string tooDeep(double sag, double ratio, double window)
+{
+    constexpr double kRound = 0.5, kOffRound = 4; // [1]; [%]
+    const double     off = ratio > kRound ? kOffRound : std::ceil(100 * (sag / kMostSag - 1));
+    return "the surface is too deep for the theory of shallow shells: it sags " + withOneDecimal(100 * sag) +
+           " % of the patch window's width, expected at most 25; compared with a --window of " +
+           formatQuantity(window * kMostSag / sag, "m") +
+           ", which is within the theory, it may be felt too soft by up to " + std::to_string(std::lround(off)) + " %";
+}
+
 /// Returns the stiffness of the membrane that a plate leaves out, over what else resists the slowest wave in the window: as
 /// the sphere that was fitted to the surface has it [1].
 double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material)
@@ -63,7 +81,7 @@ double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const 
 void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings,
                   const Material& material)
 {
-    constexpr double kSag = 0.25, kFolded = 0.5, kNearly = 0.95, kFelt = 0.2; // [1]
+    constexpr double kFolded = 0.5, kNearly = 0.95, kFelt = 0.2; // [1]
     if (settings.theory == Theory::plate && settings.neighbourhood == Neighbourhood::surface &&
         membraneLeftOut(patch, settings, material) > kFelt)
         result.push_back(
@@ -88,10 +106,8 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                          formatQuantity(patch.shellLength, "m") +
                          " each), so that its edges are felt; try a --window of " +
                          formatQuantity(kLocalWindow * patch.shellLength, "m"));
-    if (std::abs(most) * window / 8 > kSag)
-        result.push_back("the surface is too deep for the theory of shallow shells: it sags " +
-                         withOneDecimal(100 * std::abs(most) * window / 8) +
-                         " % of the patch window's width, expected at most 25; try a smaller --window");
+    if (const double sag = std::abs(most) * window / 8; sag > kMostSag)
+        result.push_back(tooDeep(sag, least / most, window));
     if (patch.unrolled > kFolded)
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }

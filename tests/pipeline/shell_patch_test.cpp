@@ -290,6 +290,9 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     EXPECT_FALSE(says("too deep", curved(49.9, 49.9))); // a sag of 10 mm
     EXPECT_TRUE(says("it sags 25.1 %", curved(50.1, 50.1)));
     EXPECT_TRUE(says("it sags 25.1 %", curved(-50.1, -50.1)));
+    EXPECT_TRUE(says("too soft by up to 4 %", curved(100, 51)));
+    EXPECT_TRUE(says(("a --window of " + formatQuantity(20e-3, "m")).c_str(), curved(100, 49)));
+    EXPECT_TRUE(says("too soft by up to 100 %", curved(100, 49)));
     EXPECT_FALSE(says("folds", folded(0.49)));
     EXPECT_TRUE(says("folds", folded(0.51)));
     const auto wide = [&](Patch& p) { // how an object is held matters more there than the window does
@@ -297,6 +300,53 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
         lengths(4)(p);
     };
     EXPECT_FALSE(says("lengths of the shell wide", wide));
+}
+
+/// A tube of 20 mm about the x axis, 200 mm long.
+SoftObject tubeOf20()
+{
+    std::mt19937                           random(5);
+    std::uniform_real_distribution<double> along(-1, 1);
+    std::vector<glm::dvec3>                points;
+    for (int n = 0; n < 40000; ++n) {
+        const double angle = 3.14159265 * along(random);
+        points.emplace_back(100e-3 * along(random), 20e-3 * std::sin(angle), 20e-3 * std::cos(angle));
+    }
+    return objectOf(std::move(points));
+}
+
+TEST(ShellPatch, AWindowThatIsTooDeepIsOffByNoMoreThanItSays)
+{
+    const auto softer = [](const SoftObject& object, double sag) {
+        PatchSettings within = kShell, deep = kShell;
+        within.window     = 40e-3;
+        deep.window       = 8 * sag * 20e-3;
+        deep.cells        = int(std::lround(deep.window / 10e-3)) * 16;
+        const Patch patch = touchOf(object, {0, 0, 20e-3}, deep);
+        EXPECT_TRUE(warned(patch, deep, "may be felt too soft"));
+        return patch.compliance / touchOf(object, {0, 0, 20e-3}, within).compliance - 1;
+    };
+    const SoftObject ball = ellipsoid(glm::dvec3(20e-3), 0), tube = tubeOf20();
+    for (const double sag : {0.3, 0.5}) {
+        const double round = softer(ball, sag), oneWay = softer(tube, sag);
+        std::printf("  sag %.1f: sphere %+.2f %%, tube %+.0f %%\n", sag, 100 * round, 100 * oneWay);
+        EXPECT_LT(std::abs(round), 0.04);
+        EXPECT_GT(oneWay, 0.1) << "the direction that is told";
+        EXPECT_LT(oneWay, sag / 0.25 - 1);
+    }
+}
+
+TEST(ShellPatch, AWindowThatNobodyFixedStaysWithinTheTheory)
+{
+    PatchSettings settings = kShell;
+    settings.windowOf      = WindowOf::dent;
+    settings.window        = 70e-3;
+    const SoftObject tube  = tubeOf20(); // nothing ends its dents, so that 70 mm it would be
+    EXPECT_NEAR(settledFor(tube, settings).window, 40e-3, 2e-3) << "a sag of 25 %; the fits flatten a tube by 4 %";
+    const Patch patch = touchOf(tube, {0, 0, 20e-3}, settings);
+    EXPECT_LT(std::abs(patch.principal.first) * patch.window.grid.sizeX() / 8, 0.26);
+    settings.theory = Theory::plate;
+    EXPECT_NEAR(settledFor(tube, settings).window, 70e-3, 1e-9) << "a plate has no depth";
 }
 
 TEST(ShellPatch, SaysWhyItStaysFlat)
