@@ -195,6 +195,53 @@ TEST(ShellPatch, WhatIsFeltDependsOnThePointsAndNotOnEarlierTouches)
     EXPECT_LT(touchOf(touched, {0, 0, 35e-3}).times.resample, 0.5 * first.times.resample) << "then nothing was kept";
 }
 
+/// Counts the fits that are kept with an object, for fields or for surveys.
+std::size_t fitsKeptWith(const SoftObject& object, bool survey)
+{
+    std::size_t count = 0;
+    for (const auto& [key, level] : object.curvatureNotes().levels)
+        if (key.second == survey) count += level.fits.size();
+    return count;
+}
+
+TEST(ShellPatch, ASurveyTakesFewFitsAndALensNone)
+{
+    const SoftObject oval = ellipsoid({60e-3, 45e-3, 35e-3}, 0);
+    (void)touchOf(oval, {0, 0, 35e-3});
+    EXPECT_GT(fitsKeptWith(oval, true), 100U);
+    EXPECT_LT(fitsKeptWith(oval, true), fitsKeptWith(oval, false) / 5) << "a field has two rungs of about that radius";
+    std::mt19937                           random(3);
+    std::uniform_real_distribution<double> along(-25e-3, 25e-3);
+    std::vector<glm::dvec3>                points;
+    for (int n = 0; n < 5000; ++n) {
+        const double x = along(random), y = along(random), sag = 10 * (x * x + y * y);
+        points.emplace_back(x, y, n % 2 ? -sag : -1e-3 + sag);
+    }
+    const SoftObject lens  = objectOf(std::move(points));
+    PatchSettings    small = kShell;
+    small.window           = 20e-3;
+    EXPECT_TRUE(warned(touchOf(lens, {}, small), small, "whose two faces bulge"));
+    EXPECT_EQ(fitsKeptWith(lens, true) + fitsKeptWith(lens, false), 0U);
+}
+
+TEST(ShellPatch, AFewHundredOfManyPointsSayHowASurfaceBends)
+{
+    const auto ballOf = [](std::size_t count) { // a cap, its points by a spiral of even density
+        std::vector<glm::dvec3> points;
+        for (std::size_t n = 0; n < count; ++n) {
+            const double z = 1 - 0.6 * (double(n) + 0.5) / double(count), turn = 2.399963 * double(n);
+            const double r = std::sqrt(1 - z * z);
+            points.push_back(50e-3 * glm::dvec3(r * std::cos(turn), r * std::sin(turn), z));
+        }
+        return objectOf(std::move(points));
+    };
+    // 1 mm and 0.28 mm apart: of the latter a fit takes a twentieth, and the cells are no wider than two of them.
+    const Patch sparse = touchOf(ballOf(9400), {0, 0, 50e-3}), dense = touchOf(ballOf(120000), {0, 0, 50e-3});
+    EXPECT_FALSE(dense.coarse) << "or it is of another object";
+    EXPECT_NEAR(dense.curvature->x(32, 32) / sparse.curvature->x(32, 32), 1, 2e-3);
+    EXPECT_NEAR(dense.compliance / sparse.compliance, 1, 2e-3);
+}
+
 TEST(ShellPatch, TheChartsAxesDoNotMatterButForTheSquareWindow)
 {
     const SoftObject object = ellipsoid({60e-3, 45e-3, 35e-3}, 0);
