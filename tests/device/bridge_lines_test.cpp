@@ -8,7 +8,9 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <thread>
 
@@ -283,10 +285,11 @@ TEST(BridgeLines, ByUdpTheFirstIsTheDeviceAndOthersAreNotHeard)
     send(second, rubbish);
     EXPECT_EQ(line->read(report, 1), 3U) << "what is no report makes nobody the device";
     send(first, encode(answerOf(1)));
+    send(second, {}); // an empty one is no silence of the first
     send(second, encode(answerOf(2)));
     send(first, encode(answerOf(3)));
     BridgeAnswer heard;
-    for (const int sequence : {1, 3}) { // the second's waits in the socket when the first becomes the device
+    for (const int sequence : {1, 3}) { // the second's wait in the socket when the first becomes the device
         EXPECT_EQ(line->read(report, 1), kBridgeSize);
         EXPECT_EQ(decode(std::span(report).first(kBridgeSize), heard), BridgeVerdict::good);
         EXPECT_EQ(heard.sequence, sequence);
@@ -300,13 +303,19 @@ TEST(BridgeLines, ByUdpTheFirstIsTheDeviceAndOthersAreNotHeard)
     EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::udp, "127.0.0.1", port}), HidRefused) << "the port is taken";
 }
 
-TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
+/// Opens the other end of a serial port, and says what its node is.
+int openTerminal(std::array<char, 64>& node)
 {
     const int master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
-    ASSERT_GE(master, 0);
-    ASSERT_EQ(grantpt(master) | unlockpt(master), 0);
+    if (master < 0 || grantpt(master) != 0 || unlockpt(master) != 0 || ptsname_r(master, node.data(), node.size()) != 0)
+        throw Error(std::strerror(errno));
+    return master;
+}
+
+TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
+{
     std::array<char, 64> node{};
-    ASSERT_EQ(ptsname_r(master, node.data(), node.size()), 0);
+    const int            master = openTerminal(node);
     const auto device = makeLineBridge({BridgeLine::Kind::serial, node.data(), 0}, {.asksForRealTime = false});
     {
         Firmware firmware(
@@ -327,6 +336,30 @@ TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
     EXPECT_TRUE(until(*device, {}, [](const HapticState& s) { return s.fault == DeviceFault::unplugged; }));
     EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, "/dev/null", 0}), HidRefused) << "no serial port";
     EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, "/dev/nowhere", 0}), HidRefused);
+}
+
+/// A session that tries a line every second would have no handles left after some minutes.
+TEST(BridgeLines, NeitherALineThatEndedNorARefusedOneKeepsAHandle)
+{
+    const auto           port = freePort();
+    std::array<char, 64> node{};
+    const int            master  = openTerminal(node);
+    const auto           handles = [] {
+        const std::filesystem::directory_iterator all("/proc/self/fd");
+        return std::distance(begin(all), end(all));
+    };
+    const auto before = handles();
+    for (const BridgeLine& line :
+         {BridgeLine{BridgeLine::Kind::udp, "127.0.0.1", port}, {BridgeLine::Kind::serial, node.data(), 0}}) {
+        const auto held = openBridgeLine(line);
+        EXPECT_EQ(handles(), before + 1) << line.place;
+        EXPECT_THROW((void)openBridgeLine(line), HidRefused);
+        EXPECT_EQ(handles(), before + 1) << line.place << " is used already";
+    }
+    EXPECT_EQ(handles(), before) << "both have ended";
+    EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, "/dev/null", 0}), HidRefused);
+    EXPECT_EQ(handles(), before) << "no serial port";
+    close(master);
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 """Builds and judges one mutant: compiles what depends on the source from a mutated copy, links each program of tests with
 those objects first, and runs it. The checkout and its build folder stay as they are."""
 
+import fcntl
 import json
 import os
 import re
@@ -28,6 +29,11 @@ class Bench:
         self.work = build / "mutants" / str(part)  # benches beside each other have folders of their own
         self.copies = self.work / "src"
         self.copies.mkdir(parents=True, exist_ok=True)
+        self.held = (self.work / "lock").open("w")
+        try:
+            fcntl.flock(self.held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise SystemExit(f"part {part} is being judged already: two would overwrite each other's mutants; take another --part")
         listed = subprocess.run(["ninja", "-t", "compdb"], cwd=build, capture_output=True, text=True, check=True).stdout
         self.compile = {e["output"]: e for e in json.loads(listed) if e["output"].endswith(".o")}
         self.links, self.dependants, self.originals, self.limits = {}, {}, {}, {}
