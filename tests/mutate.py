@@ -89,6 +89,11 @@ def turns(results, wanted, again):
                 yield queue.pop(0)
 
 
+def killers(results, source):
+    """Lists the tests that killed mutants of a source: the next one of it most likely dies by them too."""
+    return sorted({reason for key, (verdict, reason) in results.items() if key[0] == source and verdict == "killed" and "." in reason})
+
+
 def report(results, wanted):
     known, harmless, rows = {source for source, _ in wanted}, explained(), {}
     for (source, _, line, mutated, _), (verdict, _) in results.items():
@@ -133,7 +138,7 @@ def main():
         for source, programs, key, mutant in turns(results, wanted[part - 1 :: parts], chosen.survivors):
             if time.monotonic() > end:
                 break
-            results[key] = bench.judge(source, applied((ROOT / source).read_text(), mutant), programs)
+            results[key] = bench.judge(source, applied((ROOT / source).read_text(), mutant), programs, killers(results, source))
             with kept.open("a") as out:
                 out.write("\t".join((*key, *results[key])) + "\n")
             print(f"{results[key][0]:9} {source}:{mutant.line + 1} {key[3]}", flush=True)

@@ -8,11 +8,12 @@ import re
 import resource
 import shlex
 import shutil
+import signal
 import subprocess
-import time
 from pathlib import Path
 
 MEMORY = 4 << 30  # [bytes] a mutant may ask for anything
+WAITING = 6  # times its limit of processor time, and a little: what a mutant may wait for its turn or for ever
 
 
 class Program:
@@ -36,7 +37,7 @@ class Bench:
             raise SystemExit(f"part {part} is being judged already: two would overwrite each other's mutants; take another --part")
         listed = subprocess.run(["ninja", "-t", "compdb"], cwd=build, capture_output=True, text=True, check=True).stdout
         self.compile = {e["output"]: e for e in json.loads(listed) if e["output"].endswith(".o")}
-        self.links, self.dependants, self.originals, self.limits = {}, {}, {}, {}
+        self.links, self.dependants, self.originals = {}, {}, {}
 
     def link_of(self, program: str) -> str:
         """Returns the command that links a program, without what the build does after it."""
@@ -69,7 +70,7 @@ class Bench:
         return not program.own and any(word.endswith(library) for word in link)
 
     def compiled(self, source: str, text: str, obj: str) -> bytes | None:
-        """Returns the object of this text of the source; None if it does not compile."""
+        """Returns the object of this text of a source; None if it does not compile."""
         copy = self.copies / source
         copy.parent.mkdir(parents=True, exist_ok=True)
         copy.write_text(text)
@@ -106,53 +107,73 @@ class Bench:
         subprocess.run(command, shell=True, cwd=self.build, check=True, capture_output=True)
         return out
 
-    def run(self, path: Path, program: Program, limit: float) -> str:
-        """Returns how the tests ended: passed, the first test that failed, timeout or crash."""
-        arguments = [str(path), "--gtest_fail_fast", "--gtest_brief=1", "--gtest_filter=" + (program.filter or "*")]
-        cap = lambda: resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    def run(self, path: Path, tests: str, limit: float) -> tuple[str, float]:
+        """Returns how the tests ended (passed, the first that failed, timeout or crash) and their processor time [s].
+
+        The limit is of processor time, because a busy machine makes every test late; one that waits for ever ends by the clock.
+        """
+        arguments = [str(path), "--gtest_fail_fast", "--gtest_brief=1", "--gtest_filter=" + tests]
+
+        def cap():
+            resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+            resource.setrlimit(resource.RLIMIT_CPU, (int(limit) + 1, int(limit) + 2))
+
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
         child = subprocess.Popen(arguments, cwd=self.work, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                  errors="replace", preexec_fn=cap, start_new_session=True)
         try:
-            out, _ = child.communicate(timeout=limit)
+            out, _ = child.communicate(timeout=WAITING * (limit + 30))
         except subprocess.TimeoutExpired:
-            os.killpg(child.pid, 9)
+            os.killpg(child.pid, signal.SIGKILL)
             child.communicate()
-            return "timeout"
+            return "timeout", limit
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         if child.returncode == 0:
-            return "passed"
+            return "passed", used
+        if child.returncode in (-signal.SIGXCPU, -signal.SIGKILL) and used >= limit:
+            return "timeout", used
         failed = re.search(r"\[  FAILED  \] (\S+)", out)
-        return failed.group(1).rstrip(",") if failed else f"crash, status {child.returncode}"
+        return failed.group(1).rstrip(",") if failed else f"crash, status {child.returncode}", used
 
     def limit_of(self, program: Program) -> float:
-        """Runs the program once as it is: it must pass, and a mutant may take ten times as long [s]."""
-        key = (program.name, program.filter)
-        if key in self.limits:
-            return self.limits[key]
-        began = time.monotonic()
-        verdict = self.run(self.build / "bin" / program.name, program, 600)
-        if verdict != "passed":
-            raise SystemExit(f"{program.name} does not pass without a mutant: {verdict}")
-        self.limits[key] = 10 * (time.monotonic() - began) + 10
-        return self.limits[key]
+        """Runs the program once as it is: it must pass, and a mutant may take ten times the processor time [s]."""
+        path, tests = self.build / "bin" / program.name, program.filter or "*"
+        kept = self.work.parent / "limits.json"
+        limits = json.loads(kept.read_text()) if kept.exists() else {}
+        key = f"{program.name} {path.stat().st_mtime_ns} {tests}"
+        if key not in limits:
+            ended, used = self.run(path, tests, 600)
+            if ended != "passed":
+                raise SystemExit(f"{program.name} does not pass without a mutant: {ended}")
+            limits = (json.loads(kept.read_text()) if kept.exists() else {}) | {key: 10 * used + 10}
+            whole = self.work / "limits.json"
+            whole.write_text(json.dumps(limits, indent=1))
+            whole.rename(kept)  # another part may read it
+        return limits[key]
 
-    def judge(self, source: str, text: str, programs: list[Program]) -> tuple[str, str]:
+    def verdict(self, path: Path, program: Program, killers: list[str]) -> str:
+        """Returns how a mutant ended: first before the tests that killed others of its source, then before all."""
+        limit, ended = self.limit_of(program), "passed"
+        if killers:
+            ended, _ = self.run(path, ":".join(killers), limit)
+        return self.run(path, program.filter or "*", limit)[0] if ended == "passed" else ended
+
+    def judge(self, source: str, text: str, programs: list[Program], killers: list[str]) -> tuple[str, str]:
         """Returns a verdict and its reason: killed, timeout, survived, same (equal machine code) or invalid."""
-        changed = False
+        every: dict[str, bytes] = {}
         for program in programs:
-            objects = {}
-            for obj in self.objects_of(source, program):
-                held = self.compiled(source, text, obj)
-                if held is None:
+            objects = self.objects_of(source, program)
+            for obj in objects:
+                every[obj] = every.get(obj) or self.compiled(source, text, obj)
+                if every[obj] is None:
                     return "invalid", ""
-                if held != self.original(source, obj):
-                    objects[obj] = held
-            if not objects:
+            if all(every[obj] == self.originals.get(obj) for obj in objects):
                 continue
-            changed = True
-            limit = self.limit_of(program)
-            ended = self.run(self.linked(program, objects), program, limit)
+            ended = self.verdict(self.linked(program, {obj: every[obj] for obj in objects}), program, killers)
             if ended == "timeout":
                 return "timeout", program.name
             if ended != "passed":
                 return "killed", ended
-        return ("survived" if changed else "same"), ""
+        # Only now, because most are killed: the original takes as long to compile as the mutant.
+        return ("survived" if any(held != self.original(source, obj) for obj, held in every.items()) else "same"), ""
