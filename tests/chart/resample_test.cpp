@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -60,6 +61,32 @@ TEST(Resample, RefusesWindowsAndPointsThatAreNone)
     }
 }
 
+TEST(Resample, AWindowHoldsItsSidesAndNothingBeyond)
+{
+    const PatchWindow window{{4, 8, 1, 0.25}, {-1, 2}}; // x from -1 to 3, z from 2 to 4
+    EXPECT_TRUE(window.holds({1, 3}));
+    for (const double x : {-1.0, 3.0})
+        for (const double z : {2.0, 4.0}) EXPECT_TRUE(window.holds({x, z})) << x << ", " << z << " is a corner";
+    for (const ChartPoint& outside : {ChartPoint{-1.01, 3}, {3.01, 3}, {1, 1.99}, {1, 4.01}})
+        EXPECT_FALSE(window.holds(outside)) << outside.x << ", " << outside.z;
+}
+
+/// Among many others too, where no node has to look for its nearest point.
+TEST(Resample, RefusesAPointThatIsNotFinite)
+{
+    const PatchWindow window = PatchWindow::square(0.02, 4);
+    for (const std::size_t count : {3U, 2000U})
+        for (const auto rule : {Resampling::logMean, Resampling::nearest})
+            for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+                for (const ChartPoint& point : {ChartPoint{bad, 0}, {0, bad}}) {
+                    Scatter s = scatter(0.02, count, 7, [](const ChartPoint&) { return 1.0; });
+                    EXPECT_NO_THROW(static_cast<void>(resampleRigidity(window, s.positions, s.rigidities, rule, 1e-3)));
+                    s.positions[1] = point;
+                    EXPECT_THROW(static_cast<void>(resampleRigidity(window, s.positions, s.rigidities, rule, 1e-3)),
+                                 ContractViolation);
+                }
+}
+
 TEST(Resample, HomogeneousCloudGivesTheSameRigidityEverywhereUnderBothRules)
 {
     const PatchWindow window = PatchWindow::square(0.03, 48);
@@ -113,6 +140,49 @@ TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
                         << "another order of the same sum";
                 }
         }
+}
+
+/// Close together on one side, five times farther apart in the middle and none beyond: each node has the mean over the smallest of the
+/// squares, doubled and doubled up to that of the sparsest, in which there is a point; beyond it is the nearest one.
+TEST(Resample, WherePointsAreFarApartTheMeanIsOverTheNextLargerSquare)
+{
+    const PatchWindow window{{24, 30, 1.0 / 24, 0.9 / 30}, {-0.5, -0.45}};
+    const double      close = 0.02, sparsest = 5.5 * close, cell = window.grid.spacingX;
+    Scatter           s   = scatter(1, 2500, 6, [](const ChartPoint& p) { return std::exp(3 * p.x + 5 * p.z * p.z); });
+    std::size_t       far = 0;
+    std::erase_if(s.positions, [&](const ChartPoint& p) { return p.x > 0 || (p.x > -0.25 && ++far % 25 != 0); });
+    s.rigidities.clear();
+    for (const ChartPoint& p : s.positions) s.rigidities.push_back(std::exp(3 * p.x + 5 * p.z * p.z));
+
+    const Resampled r = resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, close, sparsest);
+
+    const double first = std::max(close, cell / 2);
+    std::size_t  filled[5]{}; // by the square that had a point, the last by the nearest one
+    for (int i = 0; i <= 24; ++i)
+        for (int j = 0; j <= 30; ++j) {
+            const ChartPoint node    = nodeOf(window, i, j);
+            double           weights = 0, logs = 0, nearest = 1e9, expected = 0;
+            std::size_t      square = 0;
+            for (const double width : {first, 2 * first, 4 * first, sparsest}) {
+                for (std::size_t n = 0; n < s.positions.size(); ++n) {
+                    const double dx = s.positions[n].x - node.x, dz = s.positions[n].z - node.z;
+                    if (const double d = std::hypot(dx, dz); d < nearest) {
+                        nearest  = d;
+                        expected = s.rigidities[n];
+                    }
+                    if (std::max(std::abs(dx), std::abs(dz)) > 4 * width) continue;
+                    const double w = std::exp(-(dx * dx + dz * dz) / (2 * width * width));
+                    weights += w;
+                    logs += w * std::log(s.rigidities[n]);
+                }
+                if (weights > 0) break;
+                ++square;
+            }
+            if (weights > 0) expected = std::exp(logs / weights);
+            EXPECT_NEAR(r.rigidity(i, j) / expected, 1, 1e-11) << i << ", " << j << ": another order of the same sum";
+            ++filled[square];
+        }
+    for (std::size_t square = 0; square < 5; ++square) EXPECT_GT(filled[square], 0u) << square;
 }
 
 /// Dense points, whose squares hold 4 x 4 nodes, sparse ones, whose squares hold more, and points with a hole; one, two
