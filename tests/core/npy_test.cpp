@@ -1,5 +1,6 @@
 #include "engine/core/npy.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -99,6 +100,47 @@ TEST(Npy, ReadsVersionsTwoAndThree)
     }
 }
 
+/// The same file with a header of another length, which takes two bytes in version 1 and four in version 2.
+std::string withHeaderOf(std::size_t size, char version)
+{
+    std::string header = headerOf("<f8", "(1, 1)");
+    header.insert(header.size() - 1, size - header.size(), ' ');
+    std::string bytes = npyOf<double>(header, {7});
+    bytes[6]          = version;
+    if (version > 1) bytes.insert(10, {char(size >> 16), '\0'});
+    return bytes;
+}
+
+TEST(Npy, AHeaderMayHave64KiBAndNoMore)
+{
+    for (const std::size_t size : {255U, 256U, 300U, 4660U, 65535U}) {
+        EXPECT_EQ(parsed(withHeaderOf(size, 1))(0, 0), 7) << size;
+        EXPECT_EQ(parsed(withHeaderOf(size, 2))(0, 0), 7) << size;
+    }
+    EXPECT_EQ(parsed(withHeaderOf(65536, 2))(0, 0), 7);
+    EXPECT_TRUE(holds(refusal(withHeaderOf(65537, 2)), {"65537 bytes", "65545 are left", "at most 65536"}));
+    std::string huge = withHeaderOf(300, 2);
+    huge[11]         = 1;
+    EXPECT_TRUE(holds(refusal(huge), {std::to_string(300 + (1 << 24)) + " bytes"}));
+}
+
+TEST(Npy, WhereAFileEndsIsSaidToTheByte)
+{
+    const std::string whole = npyOf<double>(headerOf("<f8", "(1, 1)"), {1});
+    EXPECT_TRUE(holds(refusal(whole.substr(0, 7)), {"its version", "2 bytes from byte 6", "found 1"}));
+    EXPECT_TRUE(holds(refusal(whole.substr(0, 8)), {"length of its header", "2 bytes from byte 8", "found 0"}));
+}
+
+TEST(Npy, EitherQuotesAreAHeaders)
+{
+    for (const char* type : {"<f8", "<f4"}) {
+        std::string header = headerOf(type, "(1, 1)");
+        std::ranges::replace(header, '\'', '"');
+        const std::string bytes = type[2] == '8' ? npyOf<double>(header, {7}) : npyOf<float>(header, {7});
+        EXPECT_EQ(parsed(bytes)(0, 0), 7) << type;
+    }
+}
+
 TEST(Npy, OtherKindsOfArraysAreRefusedWithTheKindFound)
 {
     const auto array = [](const std::string& header) { return refusal(npyOf<double>(header, {1})); };
@@ -151,6 +193,8 @@ TEST(Npy, ForeignBytesAndBrokenHeadersAreRefused)
     std::string future = npyOf<double>(headerOf("<f8", "(1, 1)"), {1});
     future[6]          = 4;
     EXPECT_TRUE(holds(refusal(future), {"version", "4"}));
+    future[6] = 0;
+    EXPECT_TRUE(holds(refusal(future), {"version", "found 0"}));
 }
 
 TEST(Npy, ValuesThatAreNotFiniteAreNamedWithTheirIndex)
