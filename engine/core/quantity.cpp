@@ -81,7 +81,7 @@ struct NumberAndUnit {
 NumberAndUnit split(std::string_view text, std::string_view what)
 {
     const std::string_view body  = trimmed(text);
-    const char*            begin = body.data() + (body.starts_with('+') ? 1 : 0);
+    const char*            begin = body.data() + (body.starts_with('+') && !body.starts_with("+-") ? 1 : 0);
     double                 number{};
     const auto [end, error] = std::from_chars(begin, body.data() + body.size(), number);
     if (error != std::errc() || !std::isfinite(number))

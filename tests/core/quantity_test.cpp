@@ -1,10 +1,12 @@
 #include "engine/core/quantity.h"
 
+#include <limits>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palp {
 namespace {
@@ -67,7 +69,7 @@ TEST(Quantity, EveryUnitIsThatManySiUnits)
 
 TEST(Quantity, AnythingElseIsRefusedWithTheKnownUnits)
 {
-    for (const char* text : {"", "mm", "nan", "inf", "1e999", "4 parsec", "4mmm", "0x10", "4,5"})
+    for (const char* text : {"", "mm", "nan", "inf", "1e999", "4 parsec", "4mmm", "0x10", "4,5", "+-4"})
         EXPECT_THROW((void)parseQuantity(text, Dimension::length, "--window"), Error) << text;
     try {
         (void)parseQuantity("4 parsec", Dimension::length, "--window");
@@ -77,6 +79,22 @@ TEST(Quantity, AnythingElseIsRefusedWithTheKnownUnits)
         for (const char* part : {"--window", "parsec", "mm", "km"})
             EXPECT_NE(message.find(part), std::string::npos) << message;
     }
+}
+
+TEST(Quantity, ARefusalListsTheUnitsOfItsDimensionInTheirOrder)
+{
+    EXPECT_TRUE(holds(refusalOf([] { (void)parseQuantity("4 parsec", Dimension::force, "--load"); }),
+                      {"known units: N, mN, kN"}));
+    EXPECT_TRUE(holds(refusalOf([] { (void)parseQuantity("4 m", Dimension::none, "--ratio"); }),
+                      {"known units: none: a plain number"}));
+    EXPECT_TRUE(holds(refusalOf([] { (void)metresPer("parsec"); }), {"\"parsec\"", "units: m, mm, cm, um, km"}));
+}
+
+TEST(Quantity, BlanksAroundANumberAndItsUnitDoNotCount)
+{
+    EXPECT_EQ(parseQuantity("   2   N   ", Dimension::force, "x"), 2);
+    EXPECT_EQ(parseQuantity("  2  ", Dimension::force, "x"), 2);
+    EXPECT_THROW((void)parseQuantity("   ", Dimension::force, "x"), Error);
 }
 
 TEST(Quantity, PointComponentsMayCarryUnits)
@@ -98,6 +116,14 @@ TEST(Quantity, PeopleReadThreeDigitsAndAPrefix)
     EXPECT_EQ(formatQuantity(999.96, "N"), "1.00 kN");
     EXPECT_EQ(formatQuantity(1e-12, "m"), "1.00 pm");
     EXPECT_EQ(formatQuantity(999e12, "Pa"), "999 TPa");
+}
+
+TEST(Quantity, WhatIsNoNumberIsCalledSo)
+{
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(formatQuantity(std::numeric_limits<double>::quiet_NaN(), "N"), "undefined");
+    EXPECT_EQ(formatQuantity(kInfinity, "N"), "infinite");
+    EXPECT_EQ(formatQuantity(-kInfinity, "N"), "infinite");
 }
 
 TEST(Quantity, BeyondThePrefixesTheUnitStays)
