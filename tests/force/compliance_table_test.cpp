@@ -48,6 +48,40 @@ TEST(ComplianceTable, ReproducesCubicsAlongBothAxesAndTheirTwist)
     }
 }
 
+/// Its mixed derivative changes from entry to entry, and differences of both sides find it where both sides are there.
+TEST(ComplianceTable, ReproducesAProductOfSquaresWithinItsOutermostCells)
+{
+    const auto            value  = [](double x, double z) { return x * x * z * z; };
+    const auto            slopeX = [](double x, double z) { return 2 * x * z * z; };
+    const auto            slopeZ = [](double x, double z) { return 2 * x * x * z; };
+    const ComplianceTable table  = tableOf(7, value, slopeX, slopeZ);
+    for (double x = -2; x <= 2; x += 0.25)
+        for (double z = -2; z <= 2; z += 0.25)
+            EXPECT_NEAR(table.at({x * kSpacing, z * kSpacing}).lnCompliance, value(x, z), 1e-12) << x << ", " << z;
+}
+
+TEST(ComplianceTable, AStiffeningIsReadWhereThereIsOneAndNeverNegative)
+{
+    const auto one   = [](double, double) { return 1.0; };
+    auto       table = tableOf(3, one, one, one);
+    for (std::size_t n = 0; n < 9; ++n) table.stiffening[n] = {double(n), 3 / kSpacing, 1 / kSpacing};
+    EXPECT_FALSE(table.at({}).stiffening.has_value());
+    EXPECT_FALSE(table.middle().stiffening.has_value());
+
+    table.stiffens = true;
+    EXPECT_EQ(table.middle().stiffening, 4.0);
+    EXPECT_NEAR(table.at({0.5 * kSpacing, -0.5 * kSpacing}).stiffening.value(), 4 + 1.5 - 0.5, 1e-14) << "3 x + z";
+
+    table.stiffening[4] = {0.1, 9 / kSpacing, 0};
+    EXPECT_EQ(table.at({-0.3 * kSpacing, 0}).stiffening, 0.0) << "the cubic has its least below 0";
+
+    EXPECT_TRUE(table.usable());
+    table.stiffening[8].slopeX = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_FALSE(table.usable());
+    table.stiffens = false;
+    EXPECT_TRUE(table.usable()) << "nobody looks at it";
+}
+
 TEST(ComplianceTable, IsContinuousWithItsSlopesAcrossTheCells)
 {
     std::mt19937_64                  bits(1);
