@@ -97,6 +97,55 @@ TEST(WebSocket, BytesThatBreakTheStandardAreRefused)
     EXPECT_THROW(readAll(first + last, 1 << 20U, WebSocketSide::server), WebSocketError) << "in fragments as well";
 }
 
+TEST(WebSocket, TheStandardsKindsOfFramesAreTakenAndNoOthers)
+{
+    for (unsigned kind = 0; kind < 16; ++kind) {
+        const std::string frame{char(0x80U | kind), 0};
+        if (kind == 1 || kind == 2 || (kind >= 8 && kind <= 10)) {
+            const auto read = readAll(frame, 2, WebSocketSide::server);
+            ASSERT_EQ(read.size(), 1U) << kind;
+            EXPECT_EQ(unsigned(read[0].kind), kind);
+        } else {
+            EXPECT_THROW(readAll(frame, 2, WebSocketSide::server), WebSocketError) << kind;
+        }
+    }
+    for (const unsigned reserved : {0x10U, 0x20U, 0x40U})
+        EXPECT_THROW(readAll(std::string{char(0x81U | reserved), 0}, 2, WebSocketSide::server), WebSocketError);
+}
+
+TEST(WebSocket, SizesAreTakenUpToTheirBounds)
+{
+    const auto passes = [](WebSocketKind kind, std::size_t size) {
+        return readAll(webSocketFrame(kind, std::string(size, 'x')), 1 << 16U, WebSocketSide::server).size() == 1;
+    };
+    EXPECT_TRUE(passes(WebSocketKind::ping, 125));
+    EXPECT_THROW(passes(WebSocketKind::ping, 126), WebSocketError);
+    EXPECT_TRUE(passes(WebSocketKind::text, kMostWebSocketMessage));
+    EXPECT_THROW(passes(WebSocketKind::text, kMostWebSocketMessage + 1), WebSocketError);
+
+    const std::string half(kMostWebSocketMessage / 2, 'x');
+    std::string       first = webSocketFrame(WebSocketKind::text, half), last = first;
+    first[0] = 0x01;
+    last[0]  = char(0x80);
+    EXPECT_EQ(readAll(first + last, 1 << 16U, WebSocketSide::server).size(), 1U) << "both together are as much";
+}
+
+TEST(WebSocket, AHeadOfHttpEndsWithinItsBoundAndSaysWhere)
+{
+    std::string bytes = "HTTP/1.1 200 OK\r\nA:";
+    bytes.append(kMostHttpHead - 4 - bytes.size(), 'x').append("\r\n\r\n");
+    const auto most = readHttpHead(bytes + "rest");
+    ASSERT_TRUE(most);
+    EXPECT_EQ(most->size, kMostHttpHead);
+    EXPECT_THROW((void)readHttpHead("y" + bytes), WebSocketError);
+    EXPECT_FALSE(readHttpHead(bytes.substr(0, kMostHttpHead - 1)));
+    const auto least = readHttpHead("a\r\n\r\n");
+    ASSERT_TRUE(least);
+    EXPECT_EQ(least->first, "a");
+    EXPECT_EQ(least->fields, "");
+    EXPECT_EQ(readHttpHead("a\r\nB:\r\nC:  \t\r\n\r\n")->field("c"), "") << "nothing but blanks";
+}
+
 TEST(WebSocket, HeadsOfHttpAreRead)
 {
     EXPECT_FALSE(readHttpHead("HTTP/1.1 101 Switching\r\nA: b\r\n"));

@@ -93,7 +93,8 @@ class Bench:
                 raise SystemExit(f"{source}: does not compile as it is:\n{self.errors}")
         return self.originals[obj]
 
-    def linked(self, program: Program, objects: dict[str, bytes]) -> Path:
+    def linked(self, program: Program, objects: dict[str, bytes]) -> Path | None:
+        """Returns the program with these objects; None if it does not link, such as without an instance of a template."""
         out, command = self.work / program.name, self.link_of(program.name)
         first = []
         for n, (obj, held) in enumerate(objects.items()):
@@ -104,8 +105,7 @@ class Bench:
             else:
                 first.append(str(path))  # its symbols come before those of the same member of a library
         command = command.replace(f" -o bin/{program.name} ", f" {' '.join(first)} -o {out} " + ("-fuse-ld=lld " if shutil.which("ld.lld") else ""))
-        subprocess.run(command, shell=True, cwd=self.build, check=True, capture_output=True)
-        return out
+        return out if subprocess.run(command, shell=True, cwd=self.build, capture_output=True).returncode == 0 else None
 
     def run(self, path: Path, tests: str, limit: float) -> tuple[str, float]:
         """Returns how the tests ended (passed, the first that failed, timeout or crash) and their processor time [s].
@@ -170,7 +170,10 @@ class Bench:
                     return "invalid", ""
             if all(every[obj] == self.originals.get(obj) for obj in objects):
                 continue
-            ended = self.verdict(self.linked(program, {obj: every[obj] for obj in objects}), program, killers)
+            path = self.linked(program, {obj: every[obj] for obj in objects})
+            if path is None:
+                return "invalid", ""
+            ended = self.verdict(path, program, killers)
             if ended == "timeout":
                 return "timeout", program.name
             if ended != "passed":
