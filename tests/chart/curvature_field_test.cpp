@@ -228,6 +228,36 @@ TEST(CurvatureField, ChangesSmoothlyAsTheWindowMovesOverNoisyPoints)
     }
 }
 
+/// Fits that all found the same bend, of both kinds, on a lattice of places.
+CurvatureSites bentBy(double curvature)
+{
+    return [curvature](int) {
+        std::vector<CurvatureSite> sites;
+        for (double x = -40e-3; x <= 40e-3; x += 2e-3)
+            for (double z = -40e-3; z <= 40e-3; z += 2e-3)
+                sites.push_back({{x, z}, {Frame{}.normal, glm::dmat3(curvature)}});
+        return sites;
+    };
+}
+
+/// The rule of curvatureField(), by its words: what noise wants or the shell feels, within the bounds.
+TEST(CurvatureField, TheRadiusOfTheFitsIsAsSmallAsNoiseAndShellPermit)
+{
+    const auto radiusOf = [](double bend, CurvatureSettings settings) {
+        settings.spacing = kSpacing;
+        return curvatureField(windowAt(0), Frame{}, bentBy(bend), settings).value().radius;
+    };
+    const auto wanted = [](double bend, double noise) { return std::cbrt(9.5 * noise * kSpacing / (0.025 * bend)); };
+    // The survey takes what noise leaves of its fits off the bend: some 1 % of the radius.
+    for (const double noise : {0.1e-3, 0.3e-3})
+        EXPECT_NEAR(radiusOf(20, {.noise = noise, .mostRadius = 30e-3}) / wanted(20, noise), 1, 0.01) << noise;
+    EXPECT_NEAR(radiusOf(20, {.mostRadius = 30e-3, .lengthRoot = 0.06}), 0.06 / std::sqrt(20), 1e-9) << "the shell's";
+    EXPECT_NEAR(radiusOf(60, {.noise = 0.5e-3, .mostRadius = 30e-3}), 0.5 / 60, 1e-9) << "half of the least radius";
+    EXPECT_NEAR(radiusOf(20, {.noise = 0.3e-3, .mostRadius = 12e-3}), 12e-3, 1e-12) << "the most";
+    EXPECT_NEAR(radiusOf(20, {.mostRadius = 12e-3}), 5 * kSpacing, 1e-12) << "five spacings";
+    EXPECT_NEAR(radiusOf(20, {.noise = 0.3e-3}), 5 * kSpacing, 1e-12) << "more than the most, if that is less";
+}
+
 TEST(CurvatureField, TurnsWithTheChart)
 {
     const Points points = scattered(quadric(20, 5, 0), 0, 5);
