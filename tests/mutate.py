@@ -37,9 +37,9 @@ def targets(words):
             yield source, [Program(word, own) for word in rest[own:]]
 
 
-def keyed(source):
-    """Returns the mutants of a source by a key that survives edits elsewhere in the file."""
-    text, seen, out = (ROOT / source).read_text(), {}, {}
+def keyed(text, source):
+    """Returns the mutants of a source's text by a key that survives edits elsewhere in the file."""
+    seen, out = {}, {}
     lines = text.split("\n")
     for mutant in mutants_of(text):
         line = lines[mutant.line]
@@ -76,17 +76,19 @@ def shown(line, mutated):
 
 
 def turns(results, wanted, again):
-    """Yields (source, programs, key, mutant) that are to be judged, one of each source in turn."""
+    """Yields (source, programs, key, line, text) that are to be judged, one of each source in turn; edits meanwhile do not count."""
     queues = []
     for source, programs in wanted:
-        known = keyed(source)
+        text = (ROOT / source).read_text()
+        known = keyed(text, source)
         keys = [k for k in known if (results.get(k, ("",))[0] == "survived" if again else k not in results)]
         random.Random(source).shuffle(keys)
-        queues.append([(source, programs, k, known[k]) for k in keys])
+        queues.append([(source, programs, k, known[k].line + 1, text, known[k]) for k in keys])
     while any(queues):
         for queue in queues:
             if queue:
-                yield queue.pop(0)
+                *about, text, mutant = queue.pop(0)
+                yield *about, applied(text, mutant)
 
 
 def killers(results, source):
@@ -95,9 +97,11 @@ def killers(results, source):
 
 
 def report(results, wanted):
-    known, harmless, rows = {source for source, _ in wanted}, explained(), {}
-    for (source, _, line, mutated, _), (verdict, _) in results.items():
-        if source not in known or verdict not in COUNTED:
+    """Prints the table, of what is a mutant of the present code."""
+    known, harmless, rows = {key for source, _ in wanted for key in keyed((ROOT / source).read_text(), source)}, explained(), {}
+    for key, (verdict, _) in results.items():
+        source, _, line, mutated, _ = key
+        if key not in known or verdict not in COUNTED:
             continue
         judged = "explained" if verdict == "survived" and (source, shown(line, mutated)) in harmless else verdict
         for name in (source, str(Path(source).parent) + "/", "all"):
@@ -111,7 +115,7 @@ def report(results, wanted):
         print(f"{name:46} {total:7} {dead:6} {told:9} {total - dead - told:8} {100 * (dead + told) / total:6.1f} %")
     for key, (verdict, _) in sorted(results.items()):
         source, operator, line, mutated, count = key
-        if source in known and verdict == "survived" and (source, shown(line, mutated)) not in harmless:
+        if key in known and verdict == "survived" and (source, shown(line, mutated)) not in harmless:
             print(f"survived: {source}, {operator}, occurrence {count}\n    {line}\n    {mutated}")
 
 
@@ -135,13 +139,13 @@ def main():
             raise SystemExit(f"{build} holds no build.ninja: build Palpate with its tests by ninja first, see --help")
         part, parts = chosen.part
         bench, end = Bench(ROOT, build, part), time.monotonic() + 60 * chosen.minutes
-        for source, programs, key, mutant in turns(results, wanted[part - 1 :: parts], chosen.survivors):
+        for source, programs, key, line, text in turns(results, wanted[part - 1 :: parts], chosen.survivors):
             if time.monotonic() > end:
                 break
-            results[key] = bench.judge(source, applied((ROOT / source).read_text(), mutant), programs, killers(results, source))
+            results[key] = bench.judge(source, text, programs, killers(results, source))
             with kept.open("a") as out:
                 out.write("\t".join((*key, *results[key])) + "\n")
-            print(f"{results[key][0]:9} {source}:{mutant.line + 1} {key[3]}", flush=True)
+            print(f"{results[key][0]:9} {source}:{line} {key[3]}", flush=True)
     report(results, wanted)
 
 

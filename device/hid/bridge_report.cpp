@@ -15,8 +15,9 @@ constexpr std::uint8_t kEnable = 1, kHome = 2;     // flags of a command
 constexpr std::size_t  kChecked = kBridgeSize - 2; // [byte] before the checksum
 
 constexpr double kMicro = 1e-6, kMilli = 1e-3, kTenthOfMilli = 1e-4; // steps of fields
-constexpr double kFiftieth = 0.02;                                   // [N s/m] up to 5.1
-constexpr double kUnit     = 1.0 / 32767;                            // of a quaternion's parts
+constexpr double kLongestWatchdog = 0.255;                           // [s] that its byte holds
+constexpr double kFiftieth        = 0.02;                            // [N s/m] up to 5.1
+constexpr double kUnit            = 1.0 / 32767;                     // of a quaternion's parts
 
 /// Writes fields one after the other, low byte first.
 class Writer {
@@ -140,7 +141,8 @@ BridgeBytes encode(const BridgeCommand& command) noexcept
     Writer out(kCommand, command.sequence);
     out.put(std::uint16_t((command.enable ? kEnable : 0) | (command.home ? kHome : 0)));
     out.put<std::int16_t>(command.enable ? command.force : glm::dvec3(0), kMilli);
-    out.put<std::uint8_t>(std::max(command.watchdog, kMilli), kMilli); // 0 would mean no watchdog
+    // 0 would mean no watchdog, and put() makes 0 of what is not finite.
+    out.put<std::uint8_t>(std::min(std::max(kMilli, command.watchdog), kLongestWatchdog), kMilli);
     out.put(command.lights);
     return out.done();
 }

@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <random>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -22,6 +23,14 @@ constexpr BridgeBytes kGoldenCommand{0x02, 0x50, 0x42, 0x11, 0x02, 0x01, 0x03, 0
                                      0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
                                      0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00,
                                      0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00, 0x02, 0x63};
+
+BridgeBytes withSum(BridgeBytes bytes)
+{
+    const std::uint16_t sum = bridgeChecksum(std::span(bytes).first(62));
+    bytes[62]               = std::uint8_t(sum);
+    bytes[63]               = std::uint8_t(sum >> 8);
+    return bytes;
+}
 
 BridgeAnswer goldenAnswer()
 {
@@ -143,8 +152,11 @@ TEST(BridgeReport, WhatDoesNotFitEndsAtTheFieldsLimit)
     for (double none : {0.0, -1.0, kNan}) {
         command.watchdog = none;
         ASSERT_EQ(decode(encode(command), got), BridgeVerdict::good);
-        EXPECT_LE(got.watchdog, 1e-3) << "a watchdog cannot be turned off";
+        EXPECT_NEAR(got.watchdog, 1e-3, 1e-12) << none << ": a watchdog cannot be turned off, which 0 would mean";
     }
+    command.watchdog = kInf;
+    ASSERT_EQ(decode(encode(command), got), BridgeVerdict::good);
+    EXPECT_NEAR(got.watchdog, 0.255, 1e-12) << "rounding";
     command.enable = false;
     ASSERT_EQ(decode(encode(command), got), BridgeVerdict::good);
     EXPECT_EQ(got.force, glm::dvec3(0)) << "no force without enable";
@@ -158,6 +170,22 @@ TEST(BridgeReport, WhatDoesNotFitEndsAtTheFieldsLimit)
     EXPECT_EQ(back.position.x, 0);
     EXPECT_NEAR(back.position.y, -2147.483648, 1e-9) << "rounding";
     EXPECT_NEAR(back.deviceTime, 1, 1e-9) << "the device's clock wraps around";
+}
+
+TEST(BridgeReport, NoMoreButtonsAreCountedThanTheirBits)
+{
+    for (const auto& [said, counted] : {std::pair{31U, 31U}, {32U, 32U}, {33U, 32U}, {1000U, 32U}}) {
+        BridgeAnswer answer, got;
+        answer.buttonCount = said;
+        BridgeBytes bytes  = encode(answer);
+        ASSERT_EQ(decode(bytes, got), BridgeVerdict::good);
+        EXPECT_EQ(got.buttonCount, counted);
+        if (said > 255) continue;
+        EXPECT_EQ(bytes[60], counted);
+        bytes[60] = std::uint8_t(said); // as a firmware might count them
+        ASSERT_EQ(decode(withSum(bytes), got), BridgeVerdict::good);
+        EXPECT_EQ(got.buttonCount, counted);
+    }
 }
 
 TEST(BridgeReport, ASilencedCommandIsTheSameWithoutItsForce)
@@ -205,14 +233,6 @@ TEST(BridgeReport, GarbageIsRefused)
         EXPECT_NE(decode(report, answer), BridgeVerdict::good);
         EXPECT_EQ(decode(report, command), BridgeVerdict::notOurs);
     }
-}
-
-BridgeBytes withSum(BridgeBytes bytes)
-{
-    const std::uint16_t sum = bridgeChecksum(std::span(bytes).first(62));
-    bytes[62]               = std::uint8_t(sum);
-    bytes[63]               = std::uint8_t(sum >> 8);
-    return bytes;
 }
 
 TEST(BridgeReport, LaterMinorVersionsAreUnderstoodOtherMajorOnesNot)
