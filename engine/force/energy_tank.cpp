@@ -63,7 +63,8 @@ EnergyTankOutput EnergyTank::step(const EnergyTankInput& in) noexcept
 {
     const double speed = std::abs(in.tangentialSpeed);
     if (!std::isfinite(in.stiffness + in.depth + in.normalSpeed + speed + in.dt + in.drag + in.stiffening) ||
-        !std::isfinite(in.storedShare) || in.stiffness < 0 || in.stiffening < 0) {
+        !std::isfinite(in.storedShare) || std::isnan(in.spareDamping + in.steepest) || in.stiffness < 0 ||
+        in.stiffening < 0) {
         energy_ = 0;
         law_    = {};
         return {};

@@ -63,6 +63,23 @@ TEST(EnergyTank, ARiseIsPaidFromItAndWaitsWhenItIsEmpty)
     EXPECT_NEAR(tank.step(at(1000, 5e-3)).stiffness, 116.16 + 2 * 1e-6 / 25e-6, 1e-9) << "1 mW goes on";
 }
 
+TEST(EnergyTank, TakesInWhatTheSpringLeavesOfTheArmsDampingAndNoMoreThanItsOwn)
+{
+    for (const auto& [spare, taken] : {std::pair{std::numeric_limits<double>::infinity(), 1.5},
+                                       {1.6, 1.5},
+                                       {1.4, 1.4},
+                                       {0.1, 0.1},
+                                       {0.0, 0.0},
+                                       {-1.0, 0.0}}) {
+        EnergyTank      tank({.damping = 1.5, .power = 0});
+        const double    had   = tank.energy();
+        EnergyTankInput moved = at(500, 0, -0.1, 0.2);
+        moved.spareDamping    = spare;
+        static_cast<void>(tank.step(moved));
+        EXPECT_NEAR(tank.energy() - had, taken * (0.01 + 0.04) * kDt, 1e-16) << spare << " N s/m";
+    }
+}
+
 EnergyTankSettings withoutIncome()
 {
     EnergyTankSettings settings;
@@ -152,12 +169,14 @@ TEST(EnergyTank, HoldsItsInvariantsOnRoughInput)
 
 TEST(EnergyTank, WhatIsNotFiniteEndsTheContact)
 {
-    for (int field = 0; field < 6; ++field)
+    for (int field = 0; field < 10; ++field)
         for (double bad : {kNan, std::numeric_limits<double>::infinity()}) {
+            if (field >= 8 && bad > 0) continue; // these two may be without a bound
             EnergyTank tank;
             static_cast<void>(tank.step(at(500, 0)));
             EnergyTankInput in    = at(500, 2e-3);
-            double*         all[] = {&in.stiffness, &in.depth, &in.normalSpeed, &in.tangentialSpeed, &in.dt, &in.drag};
+            double*         all[] = {&in.stiffness, &in.depth,      &in.normalSpeed, &in.tangentialSpeed, &in.dt,
+                                     &in.drag,      &in.stiffening, &in.storedShare, &in.spareDamping,    &in.steepest};
             *all[field]           = bad;
 
             const EnergyTankOutput out = tank.step(in);
