@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <type_traits>
@@ -237,6 +238,40 @@ TEST(RelaxingContact, AHandThatWasLiftedAndMovesALittleStillFindsTheDent)
     EXPECT_NEAR(contact.surface(), std::exp(-0.05 / 4) * left, 0.01 * left) << "and a tick of coming up, 0.3 %";
     static_cast<void>(contact.step({{kK}, 0, {0.05, 0, 0}, kDt}));
     EXPECT_LT(contact.surface(), 1e-3 * left) << "elsewhere nothing was pressed";
+}
+
+TEST(RelaxingContact, WhatIsNotFiniteForgetsEverything)
+{
+    using Tick      = RelaxingContact::Tick;
+    const Tick good = {{kK, 300, 2000}, 2e-3, {}, kDt};
+    for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+        for (int field = 0; field < 7; ++field) {
+            RelaxingContact contact(meat(), kFade), fresh(meat(), kFade);
+            for (int n = 0; n < 2000; ++n) static_cast<void>(contact.step(good));
+            Tick    now    = good;
+            double* all[]  = {&now.depth,         &now.dt, &now.place.x, &now.place.y, &now.place.z, &now.law.stiffness,
+                              &now.law.stiffening};
+            *all[field]    = bad;
+            const auto out = contact.step(now);
+            EXPECT_EQ(out.force, 0) << field;
+            EXPECT_EQ(out.stored, 0) << field;
+            EXPECT_EQ(contact.surface(), 0) << field;
+            EXPECT_EQ(contact.step(good).force, fresh.step(good).force) << field;
+        }
+}
+
+/// As between two objects, or where a map has a hole.
+TEST(RelaxingContact, WhereNoStiffnessIsKnownTheMemoryWaitsWithoutAForce)
+{
+    RelaxingContact contact(meat(), kFade);
+    double          force = 0;
+    for (int n = 0; n < 2000; ++n) force = contact.step({{kK}, 2e-3, {}, kDt}).force;
+    for (int n = 0; n < 500; ++n) {
+        const auto out = contact.step({{0}, 2e-3, {}, kDt});
+        ASSERT_EQ(out.force, 0);
+        ASSERT_EQ(out.stored, 0);
+    }
+    EXPECT_NEAR(contact.step({{kK}, 2e-3, {}, 0}).force, force, 1e-12);
 }
 
 TEST(RelaxingContact, ChangesWithTheStiffnessAsASpringDoes)
