@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <type_traits>
 #include <utility>
@@ -260,12 +261,29 @@ TEST(RelaxingContact, WhatIsNotFiniteForgetsEverything)
         }
 }
 
+/// What an earlier touch lost is gone: it does not pay for fresh material in a later one.
+TEST(RelaxingContact, OnlyWhatThisContactLostPaysForFreshMaterial)
+{
+    const auto refreshedAfter = [](const std::optional<RelaxingContact::Tick>& between) {
+        RelaxingContact contact(meat(), kFade);
+        for (int n = 0; n < 2000; ++n) static_cast<void>(contact.step({{kK}, 2e-3, {}, kDt}));
+        if (between) static_cast<void>(contact.step(*between));
+        static_cast<void>(contact.step({{kK}, 2e-3, {}, kDt}));
+        return contact.step({{kK}, 2e-3, {5e-3, 0, 0}, kDt}).refreshed;
+    };
+    const double one = refreshedAfter(std::nullopt);
+    EXPECT_GT(one, 0.05e-3) << "a tenth of the millijoule that is pressed in";
+    EXPECT_LT(refreshedAfter({{{kK}, 0, {}, kDt}}), 0.1 * one) << "a hand that was lifted";
+    EXPECT_LT(refreshedAfter({{{0}, 0, {}, kDt}}), 0.1 * one) << "where nothing was known, likewise";
+}
+
 /// As between two objects, or where a map has a hole.
 TEST(RelaxingContact, WhereNoStiffnessIsKnownTheMemoryWaitsWithoutAForce)
 {
     RelaxingContact contact(meat(), kFade);
     double          force = 0;
     for (int n = 0; n < 2000; ++n) force = contact.step({{kK}, 2e-3, {}, kDt}).force;
+    ASSERT_GT(force, 0.1);
     for (int n = 0; n < 500; ++n) {
         const auto out = contact.step({{0}, 2e-3, {}, kDt});
         ASSERT_EQ(out.force, 0);
