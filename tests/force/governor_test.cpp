@@ -656,6 +656,11 @@ TEST(ForceGovernor, TakesEverySettingUpToItsBoundsAndNoneBeyond)
         settings.missedTicks = ticks;
         EXPECT_EQ(complaint(settings).empty(), ticks >= 1 && ticks <= 20) << ticks;
     }
+    for (const int ticks : {0, 1, 1000, 1001}) {
+        GovernorSettings settings;
+        settings.calmTicks = ticks;
+        EXPECT_EQ(complaint(settings).empty(), ticks >= 1 && ticks <= 1000) << ticks;
+    }
 }
 
 // ---- anything at all

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/contract.h"
@@ -170,6 +171,20 @@ TEST(ForceGovernor, AFastHandInFreeSpaceEngagesAnewByItself)
     servo.in.force    = {};
     servo.engaged();
     EXPECT_EQ(servo.governor.fault(), GovernorFault::none);
+}
+
+TEST(ForceGovernor, AHandIsFastByItselfOnceNoForceActedForFiftyMilliseconds)
+{
+    for (const auto& [ticks, fault] : {std::pair{48, GovernorFault::tooFast}, {52, GovernorFault::none}}) {
+        Servo servo;
+        servo.pushing({0, 0, 5});
+        servo.in.force = {};
+        while (servo.tick().force != glm::dvec3(0)) {
+        } // a tick without a force is one of them
+        servo.ticks(ticks - 1);
+        servo.in.velocity = {0, 0, 1.5};
+        EXPECT_EQ(servo.tick().fault, fault) << ticks << " ms";
+    }
 }
 
 TEST(ForceGovernor, AHandThatAForceHasJustDrivenIsAFault)
