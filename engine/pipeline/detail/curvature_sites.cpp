@@ -1,6 +1,7 @@
 #include "engine/pipeline/detail/curvature_sites.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <numbers>
@@ -15,13 +16,19 @@
 namespace palp {
 namespace {
 
-/// Side of the cubes that have a site on each face, over the radius of the fits [1]; the index takes it to 1.4 more or less.
-/// With 0.75 in place of 0.5 a field has half as many, and a tube of noisy points is felt three times as uneven.
-constexpr double kCube = 0.5, kSurveyCube = 1;
+/// Area of the surface that has a site, over the square of the radius of the fits [1]: of a field, and of a survey, which only
+/// finds the radius. Where the points are noisy it is a fourth of that: fits differ then, and a hand would feel each come and
+/// go (measured: with the whole area a tube is felt four times as uneven).
+constexpr double kSiteArea = 0.2, kSurveySiteArea = 0.8, kMostSites = 4;
 
-/// Area of a cube's points over its side's from which on they have a site [1]: of many cubes the surface cuts off but a
-/// corner. With 0.25 a noisy ridge is felt a third more uneven.
-constexpr double kCorner = 0.1;
+/// Error that noise makes of a fit, in inverse radii, above which points count as noisy [1]: a hundredth of what may bend.
+constexpr double kQuiet = 0.0015;
+
+/// Area of a cube's points over that of a site from which on they have one [1]: of many cubes the surface cuts off a corner.
+constexpr double kCorner = 0.3;
+
+/// Side of the cubes over the root of a site's area [1]: their points are shared out to some three to twelve sites.
+constexpr double kCubes = 2;
 
 /// Returns how many points of a ball a fit needs: some hundred say how a clean surface bends, and of noisy ones as many as
 /// keep what noise adds below 0.004 of the inverse radius, a twentieth of what may bend within it.
@@ -34,37 +41,64 @@ std::size_t enoughFor(double noise, double radius)
     return std::size_t(std::clamp(2 * wanted * wanted, kFewest, kMost));
 }
 
-/// Chooses the points of a cube nearest to the mean of those that face alike: a thin body has two faces in it.
-/// \param begin, end  ranks
-void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end,
-              double leastArea)
+/// Makes a site of that of some points which is nearest to their mean.
+void addSite(CurvatureNotes::Level& level, const SoftObject& object, std::span<const std::uint32_t> ranks)
 {
-    const auto       positions = object.index().positionsByRank();
-    const glm::dvec3 first     = object.survey().normalOfRank(begin);
+    const auto positions = object.index().positionsByRank();
+    glm::dvec3 mean{};
+    for (const std::uint32_t rank : ranks) mean += positions[rank] / double(ranks.size());
+    const auto away = [&](std::uint32_t rank) {
+        const glm::dvec3 d = positions[rank] - mean;
+        return glm::dot(d, d);
+    };
+    const std::uint32_t site = *std::ranges::min_element(ranks, {}, away);
+    level.isSite[site]       = true;
+    level.share[site]        = float(ranks.size());
+}
+
+/// Some points that face alike.
+struct Facing {
+    std::vector<std::uint32_t> ranks;
+    double                     area  = 0; ///< [m^2]
+    double                     noise = 0; ///< times the spacing, mean [m^2]
+};
+
+/// \param begin, end  ranks
+/// \param alike       to the first of them, or the other way
+Facing facing(const SoftObject& object, std::uint32_t begin, std::uint32_t end, bool alike)
+{
+    const SurfaceSurvey& survey = object.survey();
+    const glm::dvec3     first  = survey.normalOfRank(begin);
+    Facing               result;
+    for (std::uint32_t rank = begin; rank < end; ++rank) {
+        if ((glm::dot(survey.normalOfRank(rank), first) >= 0) != alike) continue;
+        const double spacing = survey.spacingOfRank(rank);
+        result.ranks.push_back(rank);
+        result.area += spacing * spacing;
+        result.noise += survey.noiseOfRank(rank) * spacing;
+    }
+    result.noise /= double(std::max<std::size_t>(1, result.ranks.size()));
+    return result;
+}
+
+/// Chooses the sites of a cube, separately of the points that face alike, for a thin body has two faces in it: those of each
+/// are cut along the curve, which keeps neighbours together, into as many pieces as have the area of a site.
+/// \param begin, end  ranks
+/// \param area        of a site among clean points [m^2]
+void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end,
+              double area, double radius)
+{
+    constexpr double kNoiseError = 9.5; // of the tensor over noise spacing / radius^3, see fitCurvature() [1]
     for (const bool alike : {true, false}) {
-        const auto isOf = [&](std::uint32_t rank) {
-            return (glm::dot(object.survey().normalOfRank(rank), first) >= 0) == alike;
-        };
-        glm::dvec3 sum{};
-        float      count = 0;
-        double     area  = 0; // [m^2]
-        for (std::uint32_t rank = begin; rank < end; ++rank) {
-            if (!isOf(rank)) continue;
-            sum += positions[rank];
-            ++count;
-            area += object.survey().spacingOfRank(rank) * object.survey().spacingOfRank(rank);
-        }
-        if (count == 0 || area < leastArea) continue;
-        std::uint32_t nearest = begin;
-        double        least   = std::numeric_limits<double>::infinity();
-        for (std::uint32_t rank = begin; rank < end; ++rank) {
-            const glm::dvec3 d = positions[rank] - sum / double(count);
-            if (!isOf(rank) || glm::dot(d, d) >= least) continue;
-            least   = glm::dot(d, d);
-            nearest = rank;
-        }
-        level.isSite[nearest] = true;
-        level.share[nearest]  = count;
+        const Facing points = facing(object, begin, end, alike);
+        const double noisy  = kNoiseError * points.noise / (radius * radius * kQuiet); // [1]
+        const double each   = area / std::clamp(noisy, 1.0, kMostSites);
+        if (points.ranks.empty() || points.area < kCorner * each) continue;
+        const auto pieces =
+            std::clamp<std::size_t>(std::size_t(std::lround(points.area / each)), 1, points.ranks.size());
+        const auto edge = [&](std::size_t piece) { return points.ranks.size() * piece / pieces; };
+        for (std::size_t piece = 0; piece < pieces; ++piece)
+            addSite(level, object, std::span(points.ranks).subspan(edge(piece), edge(piece + 1) - edge(piece)));
     }
 }
 
@@ -72,10 +106,9 @@ CurvatureNotes::Level levelOf(const SoftObject& object, double radius, FitsFor w
 {
     CurvatureNotes::Level level;
     level.isSite.resize(object.size());
-    const double side  = (what == FitsFor::field ? kCube : kSurveyCube) * radius; // [m]
-    const auto   edges = object.index().cubes(side);
-    for (std::size_t n = 0; n + 1 < edges.size(); ++n)
-        addSites(level, object, edges[n], edges[n + 1], kCorner * side * side);
+    const double area  = (what == FitsFor::field ? kSiteArea : kSurveySiteArea) * radius * radius; // [m^2]
+    const auto   edges = object.index().cubes(kCubes * std::sqrt(area));
+    for (std::size_t n = 0; n + 1 < edges.size(); ++n) addSites(level, object, edges[n], edges[n + 1], area, radius);
     return level;
 }
 
