@@ -68,7 +68,7 @@ public:
     [[nodiscard]] std::shared_ptr<const CoarseObject> coarse(double side) const;
 
     /// Returns what is known of the curvature of the surface, to be read and added to by whoever fits it; all objects of the
-    /// same points share it.
+    /// same points and thickness share it.
     [[nodiscard]] CurvatureNotes& curvatureNotes() const noexcept { return *curvatureNotes_; }
 
     /// Returns what withFoundation() took [1]; empty: the foundation is the same everywhere.
