@@ -237,6 +237,7 @@ TEST(ShellPatch, AFewHundredOfManyPointsSayHowASurfaceBends)
     };
     // 1 mm and 0.28 mm apart: of the latter a fit takes a twentieth, and the cells are no wider than two of them.
     const Patch sparse = touchOf(ballOf(9400), {0, 0, 50e-3}), dense = touchOf(ballOf(120000), {0, 0, 50e-3});
+    ASSERT_TRUE(sparse.curvature && dense.curvature) << dense.flatBecause;
     EXPECT_FALSE(dense.coarse) << "or it is of another object";
     EXPECT_NEAR(dense.curvature->x(32, 32) / sparse.curvature->x(32, 32), 1, 2e-3);
     EXPECT_NEAR(dense.compliance / sparse.compliance, 1, 2e-3);
