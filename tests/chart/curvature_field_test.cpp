@@ -258,6 +258,41 @@ TEST(CurvatureField, TheRadiusOfTheFitsIsAsSmallAsNoiseAndShellPermit)
     EXPECT_NEAR(radiusOf(20, {.noise = 0.3e-3}), 5 * kSpacing, 1e-12) << "more than the most, if that is less";
 }
 
+TEST(CurvatureField, TheSurveyIsAsWideAsALongWindowWants)
+{
+    PatchWindow long_{{32, 8, 40e-3 / 32, 10e-3 / 8}, {-20e-3, -5e-3}};
+    for (const bool turned : {false, true}) {
+        if (turned) long_ = {{8, 32, 10e-3 / 8, 40e-3 / 32}, {-5e-3, -20e-3}};
+        std::vector<int> asked;
+        const auto       sites = [&](int rung) {
+            asked.push_back(rung);
+            return bentBy(20)(rung);
+        };
+        static_cast<void>(curvatureField(long_, Frame{}, sites, {.spacing = 0.2e-3, .mostRadius = 20e-3}));
+        ASSERT_FALSE(asked.empty());
+        EXPECT_NEAR(rungRadius(asked[0]) / 4e-3, 1, 0.15) << "a tenth of 40 mm, to half a rung";
+    }
+}
+
+/// Of h = c r^4 the weights (1 - r^2)^2 of a fit find 2/3 of the quadric that equal ones do: see the means of a disc.
+TEST(CurvatureField, AFitLooksAtItsMiddleMoreThanAtItsRim)
+{
+    constexpr double kRadius = 10e-3, kHigh = 0.2e-3; // [m] of the fit, and at its rim
+    Points           points;
+    for (double x = -kRadius; x <= kRadius; x += 0.25e-3)
+        for (double z = -kRadius; z <= kRadius; z += 0.25e-3) {
+            const double squared = (x * x + z * z) / (kRadius * kRadius);
+            points.places.push_back({x, z, -kHigh * squared * squared});
+            points.normals.push_back({0, 0, 1});
+        }
+    const auto fit = fitCurvature({points.places, points.normals}, {}, kRadius);
+    ASSERT_TRUE(fit.has_value());
+    const double quadric = 2 * kHigh / (kRadius * kRadius); // [1/m] of c r^2
+    // Tukey's weights, which see the rim lie far away, take a little more.
+    EXPECT_NEAR(fit->tensor[0][0] / quadric, 2.0 / 3, 0.08);
+    EXPECT_NEAR(fit->tensor[1][1] / quadric, 2.0 / 3, 0.08);
+}
+
 TEST(CurvatureField, TurnsWithTheChart)
 {
     const Points points = scattered(quadric(20, 5, 0), 0, 5);

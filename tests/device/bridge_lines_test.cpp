@@ -338,6 +338,22 @@ TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
     EXPECT_THROW((void)openBridgeLine({BridgeLine::Kind::serial, "/dev/nowhere", 0}), HidRefused);
 }
 
+TEST(BridgeLines, HalfAReportIsNotAwaitedTwice)
+{
+    std::array<char, 64> node{};
+    const int            master = openTerminal(node);
+    const auto           line   = openBridgeLine({BridgeLine::Kind::serial, node.data(), 0});
+    const BridgeBytes    whole  = encode(answerOf(7));
+    ASSERT_EQ(write(master, whole.data(), whole.size() / 2), ssize_t(whole.size() / 2));
+    std::array<std::uint8_t, kBridgeSize> report{};
+    const double                          begin = seconds();
+    EXPECT_EQ(line->read(report, 5), 0U) << "the exchange goes on";
+    EXPECT_LT(seconds() - begin, 4) << "of 5 s that it would have waited for the first byte";
+    ASSERT_EQ(write(master, whole.data() + whole.size() / 2, whole.size() / 2), ssize_t(whole.size() / 2));
+    EXPECT_EQ(line->read(report, 5), kBridgeSize);
+    close(master);
+}
+
 /// A session that tries a line every second would have no handles left after some minutes.
 TEST(BridgeLines, NeitherALineThatEndedNorARefusedOneKeepsAHandle)
 {

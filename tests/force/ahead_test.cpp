@@ -56,6 +56,8 @@ TEST(TableSide, CoversWhatAHandDoesInTwoPeriods)
     EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 60, 4e-3), 3) << "3.3 of 4 mm";
     EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 45, 4e-3), 5) << "5.2 of 8 mm";
     EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 30, 4e-3), 7) << "10 of 12 mm";
+    EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 55, 4e-3), 3) << "3.8 of 4 mm";
+    EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 52, 4e-3), 5) << "4.1 of 8 mm";
     EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 10, 4e-3), 7) << "there is no larger one";
     EXPECT_EQ(tableSide(ComplianceLaw::table, 1.0 / 500, 4e-3), 3);
     EXPECT_EQ(tableSide(ComplianceLaw::blend, 1.0 / 30, 4e-3), 1);

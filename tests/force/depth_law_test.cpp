@@ -155,6 +155,9 @@ TEST(DepthLaw, WhereTheForceStaysTheSameTheLeastDepthIsItsDepth)
     EXPECT_NEAR(law.force(5e-3), 200 * 0.05e-3, 1e-12);
     EXPECT_NEAR(law.depthOf(law.force(5e-3)), 0.1e-3, 1e-6);
     EXPECT_TRUE(std::isfinite(law.depthOf(1)));
+    flat.tangents.fill(1);
+    flat.tangents[0] = 0; // it begins without a resistance
+    EXPECT_EQ(DepthLaw::capped(200, 0, 1000, flat).depthOf(0), 0);
 }
 
 TEST(DepthShape, IsUsableIfItIsFiniteAndNeverFalls)

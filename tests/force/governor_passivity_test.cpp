@@ -52,6 +52,18 @@ TEST(ForceGovernor, TheForceThatActedWhileAnAnswerWasAwaitedIsAMean)
     EXPECT_NEAR(servo.tick().energy, 1.5e-3, 1e-12) << "2 N for a tick, then 1 N for a tick";
 }
 
+/// A clock that stands still while the places are older than what is remembered: no time, no work.
+TEST(ForceGovernor, InNoTimeAtAllNoWorkIsDone)
+{
+    Servo servo(strictObserver());
+    servo.pushing({0, 0, 2});
+    servo.in.sinceAnswer = servo.in.answerAge = 0.05;
+    const double before                       = servo.ticks(200).energy;
+    servo.in.dt                               = 0;
+    servo.in.position.z                       = -1e-3;
+    EXPECT_NEAR(servo.tick().energy, before, 1e-12);
+}
+
 TEST(ForceGovernor, TheTanksEnergyAndTheArmsDampingAreCredited)
 {
     Servo servo;

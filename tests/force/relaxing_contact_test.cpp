@@ -277,6 +277,18 @@ TEST(RelaxingContact, OnlyWhatThisContactLostPaysForFreshMaterial)
     EXPECT_LT(refreshedAfter({{{0}, 0, {}, kDt}}), 0.1 * one) << "where nothing was known, likewise";
 }
 
+/// Within a tick what is lost a second only grows or falls: the lesser end bounds it, so that no more is given back.
+TEST(RelaxingContact, ATickCountsNoMoreAsLostThanItsLesserEnd)
+{
+    RelaxingContact contact(meat(), kFade);
+    EXPECT_EQ(contact.step({{kK}, 0.2e-3, {}, kDt}).refreshed, 0) << "nothing slid";
+    EXPECT_EQ(contact.step({{kK}, 2e-3, {}, kDt}).refreshed, 0);
+    double lost = 0; // [J] at most, by the first end of the second tick
+    for (std::size_t n = 0; n < 2; ++n)
+        lost += meat().terms[n].share / meat().terms[n].time * kDt * kK * 0.2e-3 * 0.2e-3;
+    EXPECT_LE(contact.step({{kK}, 2e-3, {5e-3, 0, 0}, kDt}).refreshed, lost);
+}
+
 /// As between two objects, or where a map has a hole.
 TEST(RelaxingContact, WhereNoStiffnessIsKnownTheMemoryWaitsWithoutAForce)
 {
