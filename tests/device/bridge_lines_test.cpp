@@ -354,6 +354,27 @@ TEST(BridgeLines, HalfAReportIsNotAwaitedTwice)
     close(master);
 }
 
+TEST(BridgeLines, AGuardianThatHasEndedIsToldOnceAndZerosStillPass)
+{
+    const auto line = openBridgeLine({BridgeLine::Kind::udp, "127.0.0.1", freePort()});
+    line->guard(kBridgeZero);
+    const BridgeBytes push = encode(BridgeCommand{.enable = true, .force = {1, 0, 0}}), zero = encode(BridgeCommand{});
+    EXPECT_NO_THROW(line->write(push));
+    ASSERT_EQ(std::system(("pkill -KILL -P " + std::to_string(getpid()) + " palpate-guardia").c_str()), 0) << "the only child";
+    const auto isTold = [&](const BridgeBytes& report) {
+        try {
+            line->write(report);
+        } catch (const HidLost&) {
+            return true;
+        }
+        return false;
+    };
+    bool told = false;
+    for (const double end = seconds() + 5; !told && seconds() < end;) told = isTold(push);
+    EXPECT_TRUE(told);
+    EXPECT_FALSE(isTold(zero)) << "the zeros that end a session";
+}
+
 /// A session that tries a line every second would have no handles left after some minutes.
 TEST(BridgeLines, NeitherALineThatEndedNorARefusedOneKeepsAHandle)
 {
