@@ -258,6 +258,26 @@ TEST(CurvatureField, TheRadiusOfTheFitsIsAsSmallAsNoiseAndShellPermit)
     EXPECT_NEAR(radiusOf(20, {.noise = 0.3e-3}), 5 * kSpacing, 1e-12) << "more than the most, if that is less";
 }
 
+TEST(CurvatureField, WhatGrowsEvenlyIsFoundUpToTheSidesOfTheWindow)
+{
+    const auto bend  = [](double x, double z) { return 50 + 1000 * x + 500 * z; }; // [1/m]
+    const auto sites = [&](int) {
+        std::vector<CurvatureSite> all;
+        for (double x = -40e-3; x <= 40e-3; x += 2e-3)
+            for (double z = -40e-3; z <= 40e-3; z += 2e-3)
+                all.push_back({{x, z}, {Frame{}.normal, glm::dmat3(bend(x, z))}});
+        return all;
+    };
+    const PatchWindow window = windowAt(0);
+    const auto field = curvatureField(window, Frame{}, sites, {.spacing = kSpacing, .mostRadius = 20e-3}).value();
+    for (int i = 0; i <= window.grid.cellsX; ++i)
+        for (int j = 0; j <= window.grid.cellsZ; ++j) {
+            const double x = window.corner.x + i * window.grid.spacingX, z = window.corner.z + j * window.grid.spacingZ;
+            // Sites lie unevenly about a place, which costs up to a fiftieth of the slope over the radius of 5 mm.
+            EXPECT_NEAR(field.x(i, j), bend(x, z), 0.05) << x << ", " << z;
+        }
+}
+
 TEST(CurvatureField, TheSurveyIsAsWideAsALongWindowWants)
 {
     PatchWindow long_{{32, 8, 40e-3 / 32, 10e-3 / 8}, {-20e-3, -5e-3}};

@@ -537,6 +537,8 @@ TEST(ExponentialMap, BrokenArgumentsAreContractViolationsThatNameThem)
     piece.normals.pop_back();
     EXPECT_TRUE(contains(why(piece, 1), "10 positions, 9 normals, 10 steps"));
     EXPECT_TRUE(contains(why(good, nan), "the reach"));
+    EXPECT_TRUE(contains(why(good, -1e-9), "the reach"));
+    EXPECT_EQ(why(good, 0), "nothing thrown") << "the origin alone";
 }
 
 } // namespace

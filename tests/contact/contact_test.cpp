@@ -72,6 +72,18 @@ TEST(Contact, AFlatWallIsTouchedAcrossWhicheverWayItStands)
     }
 }
 
+TEST(Contact, AnObjectOfManyMetresIsTouchedFromOutsideToo)
+{
+    std::vector<glm::dvec3> ball;
+    for (int n = 0; n < 2000; ++n) { // Fibonacci's spiral
+        const double z = 1 - (2 * n + 1) / 2000.0, turn = 2.39996322972865 * n, r = std::sqrt(1 - z * z);
+        ball.push_back(20.0 * glm::dvec3(r * std::cos(turn), r * std::sin(turn), z));
+    }
+    const std::vector<double> stiffness(ball.size(), 1e6);
+    const SoftObject          object(PointCloud(ball, stiffness, StiffnessKind::modulus));
+    for (const glm::dvec3& p : ball) ASSERT_GT(glm::dot(touchAt(object, p, {}, 5e-3).outward, glm::normalize(p)), 0.99);
+}
+
 TEST(Contact, TheUserDecidesTheSide)
 {
     const glm::dvec3 outward = Object("sheet").touch({0, 0, 0}, glm::dvec3(0, 3, -4)).outward;
