@@ -231,7 +231,7 @@ TEST(CurvatureField, ChangesSmoothlyAsTheWindowMovesOverNoisyPoints)
 /// Fits that all found the same bend, of both kinds, on a lattice of places.
 CurvatureSites bentBy(double curvature)
 {
-    return [curvature](int) {
+    return [curvature](int, FitsFor) {
         std::vector<CurvatureSite> sites;
         for (double x = -40e-3; x <= 40e-3; x += 2e-3)
             for (double z = -40e-3; z <= 40e-3; z += 2e-3)
@@ -261,7 +261,7 @@ TEST(CurvatureField, TheRadiusOfTheFitsIsAsSmallAsNoiseAndShellPermit)
 TEST(CurvatureField, WhatGrowsEvenlyIsFoundUpToTheSidesOfTheWindow)
 {
     const auto bend  = [](double x, double z) { return 50 + 1000 * x + 500 * z; }; // [1/m]
-    const auto sites = [&](int) {
+    const auto sites = [&](int, FitsFor) {
         std::vector<CurvatureSite> all;
         for (double x = -40e-3; x <= 40e-3; x += 2e-3)
             for (double z = -40e-3; z <= 40e-3; z += 2e-3)
@@ -284,9 +284,9 @@ TEST(CurvatureField, TheSurveyIsAsWideAsALongWindowWants)
     for (const bool turned : {false, true}) {
         if (turned) long_ = {{8, 32, 10e-3 / 8, 40e-3 / 32}, {-5e-3, -20e-3}};
         std::vector<int> asked;
-        const auto       sites = [&](int rung) {
+        const auto       sites = [&](int rung, FitsFor what) {
             asked.push_back(rung);
-            return bentBy(20)(rung);
+            return bentBy(20)(rung, what);
         };
         static_cast<void>(curvatureField(long_, Frame{}, sites, {.spacing = 0.2e-3, .mostRadius = 20e-3}));
         ASSERT_FALSE(asked.empty());
