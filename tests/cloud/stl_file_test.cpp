@@ -57,6 +57,19 @@ TEST(StlFile, CornersAtOnePlaceBecomeOnePoint)
     }
 }
 
+TEST(StlFile, EachCornerHasItsOwnThreeNumbers)
+{
+    const std::string ascii = "solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2 3\nvertex 4 -5 6\nvertex 7 8 -9\n"
+                              "endloop\nendfacet\nendsolid\n";
+    for (const std::string& bytes : {binary({{1, 2, 3, 4, -5, 6, 7, 8, -9}}), ascii}) {
+        const LoadedCloud loaded = parsed(bytes, CloudFormat::stl);
+        ASSERT_EQ(loaded.cloud.size(), 3u);
+        EXPECT_EQ(loaded.cloud.positions()[0], glm::dvec3(1, 2, 3));
+        EXPECT_EQ(loaded.cloud.positions()[1], glm::dvec3(4, -5, 6));
+        EXPECT_EQ(loaded.cloud.positions()[2], glm::dvec3(7, 8, -9));
+    }
+}
+
 TEST(StlFile, TheLengthDecidesWhetherItIsBinaryNotTheFirstWord)
 {
     const LoadedCloud loaded = parsed(binary(kTwo, "solid made by a program that should not"), CloudFormat::stl);

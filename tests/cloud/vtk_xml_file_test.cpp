@@ -145,6 +145,11 @@ TEST(VtkXmlFile, XmlThatIsNotWholeIsRefusedWithItsLine)
     std::string deep;
     for (int i = 0; i < 100; ++i) deep += "<a>";
     EXPECT_TRUE(contains(vtkRefusal(deep), {"within each other"}));
+    for (const std::size_t levels : {33U, 34U}) { // a root and 32 within it
+        std::string nested;
+        for (std::size_t n = 0; n < levels; ++n) nested = "<a>" + nested + "</a>";
+        EXPECT_EQ(vtkRefusal(nested).find("within each other") == std::string::npos, levels == 33U) << levels;
+    }
     for (std::size_t size = 0; size + 1 < good.size(); size += 3)
         EXPECT_NE(vtkRefusal(good.substr(0, size)), "") << "cut to " << size;
 }

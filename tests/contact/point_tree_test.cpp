@@ -116,6 +116,8 @@ TEST(PointTree, ALevelCoversTheDenseDiscWithFewPoints)
     ASSERT_TRUE(tree.mixed());
     const int level = tree.level(1), all = tree.level(1.0 / 30);
     EXPECT_EQ(all, 0);
+    EXPECT_EQ(tree.cell(0), 0) << "all points stand for themselves";
+    EXPECT_NEAR(tree.cell(level), 0.375, 0.125 * (1 + 1e-9)) << "from a quarter to a half of the look's spacing";
     std::vector<glm::dvec3> shown;
     tree.inside({0, 0, 0}, 2, level, [&](const NearPoint& p) {
         shown.push_back(p.position);
