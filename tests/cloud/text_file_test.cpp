@@ -114,6 +114,13 @@ TEST(TextFile, ASemicolonSeparatesEvenWhereWordsHoldCommas)
     EXPECT_EQ(text("1;2;3;a,b\n4;5;6;c,d\n", withColumns("x,y,z,-")).cloud.positions()[1], glm::dvec3(4, 5, 6));
 }
 
+TEST(TextFile, AQuoteAtOneEndOfANameBelongsToIt)
+{
+    for (const std::string name : {"a\"", "\"a"})
+        EXPECT_EQ(text("x;y;z;" + name + "\n1;2;3;7\n4;5;6;8\n", withProperty(name)).cloud.stiffness()[1], 8) << name;
+    EXPECT_EQ(text("x;y;z;\"a\"\n1;2;3;7\n4;5;6;8\n", withProperty("a")).cloud.stiffness()[1], 8);
+}
+
 TEST(TextFile, APropertyThatTheUserNamesKeepsItsSpelling)
 {
     CloudReadSettings settings = withProperty("e");

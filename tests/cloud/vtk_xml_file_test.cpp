@@ -136,7 +136,7 @@ TEST(VtkXmlFile, XmlThatIsNotWholeIsRefusedWithItsLine)
     EXPECT_TRUE(contains(vtkRefusal(replaced(good, "<PolyData>", "<PolyData a='1' a='2'>")), {"line 4", "\"a\" once"}));
     EXPECT_TRUE(contains(vtkRefusal(replaced(good, "<PolyData>", "<!DOCTYPE x><PolyData>")),
                          {"line 4", "expected an element"}));
-    EXPECT_TRUE(contains(vtkRefusal(good + "<more/>"), {"the end of the file after its root"}));
+    EXPECT_TRUE(contains(vtkRefusal(good + "<more/>"), {"the end of the file after its root", "found \"<more/>\""}));
     EXPECT_TRUE(contains(vtkRefusal("solid cube\n"), {"line 1", "expected XML"}));
     EXPECT_TRUE(contains(vtkRefusal(replaced(good, "VTKFile type", "VTKFile kind")),
                          {"PolyData or UnstructuredGrid", "no type"}));
@@ -152,6 +152,12 @@ TEST(VtkXmlFile, XmlThatIsNotWholeIsRefusedWithItsLine)
     }
     for (std::size_t size = 0; size + 1 < good.size(); size += 3)
         EXPECT_NE(vtkRefusal(good.substr(0, size)), "") << "cut to " << size;
+}
+
+TEST(VtkXmlFile, NumbersOfBytesAreCountedInARefusal)
+{
+    const std::string fewer = replaced(std::string(kXmlBinary), "NumberOfPoints=\"5\"", "NumberOfPoints=\"4\"");
+    EXPECT_TRUE(contains(vtkRefusal(fewer), {"expected 12 numbers, found more"}));
 }
 
 TEST(VtkXmlFile, FilesThatWereCutShortAreRefused)

@@ -84,6 +84,17 @@ TEST(Contact, AnObjectOfManyMetresIsTouchedFromOutsideToo)
     for (const glm::dvec3& p : ball) ASSERT_GT(glm::dot(touchAt(object, p, {}, 5e-3).outward, glm::normalize(p)), 0.99);
 }
 
+TEST(Contact, InTheMiddleOfAnObjectUpIsOutward)
+{
+    std::vector<glm::dvec3> points{{0, 0, 0}};
+    for (const double x : {-1e-2, 1e-2})
+        for (const double y : {-1e-2, 1e-2})
+            for (const double z : {-1e-2, 1e-2}) points.push_back({x, y, z});
+    const std::vector<double> stiffness(points.size(), 1e6);
+    const SoftObject          object(PointCloud(points, stiffness, StiffnessKind::modulus));
+    EXPECT_EQ(touchAt(object, {0, 0, 0}, {}, 5e-3).outward, glm::dvec3(0, 0, 1));
+}
+
 TEST(Contact, TheUserDecidesTheSide)
 {
     const glm::dvec3 outward = Object("sheet").touch({0, 0, 0}, glm::dvec3(0, 3, -4)).outward;

@@ -183,6 +183,8 @@ TEST(DepthShape, BetweenTwoEverythingGoesEvenly)
     EXPECT_EQ(between({}, other, 1), other);
     EXPECT_NEAR(between(one, other, 0.25).tangents[10], 0.75 * one.tangents[10] + 0.25 * other.tangents[10], 1e-12);
     EXPECT_NEAR(between({}, other, 0.5).tangents[8], 1.5, 1e-12); // none is a straight one
+    EXPECT_NEAR(between(other, {}, 0.5).tangents[8], 1.5, 1e-12);
+    EXPECT_EQ(between(other, {}, 0.5).step, other.step);
 }
 
 } // namespace
