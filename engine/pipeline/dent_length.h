@@ -31,8 +31,8 @@ struct DentLengths {
 [[nodiscard]] std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide the patch window of WindowOf::dent is [m]: as most places of the object ask for, or as the settings say
-/// where nothing ends a dent; of shells no wider than kMostSag allows at all but a twentieth of the places; and at least four
-/// radii of the fingertip.
+/// where nothing ends a dent; of shells no wider than kMostSag allows at half of the places, or where nothing ends a dent at
+/// all but a twentieth; and at least four radii of the fingertip.
 /// \note as dentLengths()
 [[nodiscard]] double dentWindow(const SoftObject& object, const PatchSettings& settings);
 
