@@ -357,6 +357,7 @@ TEST(BridgeLines, HalfAReportIsNotAwaitedTwice)
     ASSERT_EQ(write(master, whole.data() + whole.size() / 2, whole.size() / 2), ssize_t(whole.size() / 2));
     EXPECT_EQ(line->read(report, 5), kBridgeSize);
     close(master);
+    EXPECT_THROW(static_cast<void>(line->read(report, 5)), HidLost) << "unplugged, though nobody writes";
 }
 
 TEST(BridgeLines, AGuardianThatHasEndedIsToldOnceAndZerosStillPass)

@@ -131,7 +131,7 @@ class Bench:
         used = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         if child.returncode == 0:
             return "passed", used
-        if child.returncode in (-signal.SIGXCPU, -signal.SIGKILL) and used >= limit:
+        if child.returncode == -signal.SIGXCPU or (child.returncode == -signal.SIGKILL and used >= limit):
             return "timeout", used
         failed = re.search(r"\[  FAILED  \] (\S+)", out)
         return failed.group(1).rstrip(",") if failed else f"crash, status {child.returncode}", used
