@@ -37,7 +37,7 @@ class Bench:
             raise SystemExit(f"part {part} is being judged already: two would overwrite each other's mutants; take another --part")
         listed = subprocess.run(["ninja", "-t", "compdb"], cwd=build, capture_output=True, text=True, check=True).stdout
         self.compile = {e["output"]: e for e in json.loads(listed) if e["output"].endswith(".o")}
-        self.links, self.dependants, self.originals = {}, {}, {}
+        self.links, self.dependants, self.originals, self.members = {}, {}, {}, {}
 
     def link_of(self, program: str) -> str:
         """Returns the command that links a program, without what the build does after it."""
@@ -66,8 +66,14 @@ class Bench:
         link = shlex.split(self.link_of(program.name))
         if obj in link:
             return True
-        library = "/lib" + obj.split("/CMakeFiles/")[1].split(".dir/")[0] + ".a"
-        return not program.own and any(word.endswith(library) for word in link)
+        return not program.own and any(obj in self.members_of(word) for word in link if word.endswith(".a") and word[0] != "/")
+
+    def members_of(self, library: str) -> set[str]:
+        """Returns the objects of a library, which may come from several targets."""
+        if library not in self.members:
+            query = subprocess.run(["ninja", "-t", "query", library], cwd=self.build, capture_output=True, text=True, check=True).stdout
+            self.members[library] = {line.strip() for line in query.splitlines() if line.endswith(".o")}
+        return self.members[library]
 
     def compiled(self, source: str, text: str, obj: str) -> bytes | None:
         """Returns the object of this text of a source; None if it does not compile."""
@@ -178,5 +184,7 @@ class Bench:
                 return "timeout", program.name
             if ended != "passed":
                 return "killed", ended
+        if not every:
+            raise SystemExit(f"{source}: no program that targets.txt names for it is made of it")
         # Only now, because most are killed: the original takes as long to compile as the mutant.
         return ("survived" if any(held != self.original(source, obj) for obj, held in every.items()) else "same"), ""
