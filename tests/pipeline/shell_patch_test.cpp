@@ -12,6 +12,7 @@
 
 #include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/plate/load.h"
@@ -300,7 +301,7 @@ TEST(ShellPatch, APlateThatIsCurvedIsNoSilentOne)
     const char* const words = "bent as if it were flat";
     const auto        cap   = [](double radius) {
         return touchOf(sheet([=](double x, double y) { return std::sqrt(radius * radius - x * x - y * y) - radius; }),
-                       {}, asPlate());
+                                {}, asPlate());
     };
     // 12 (1 - nu^2) a^4 / (4 pi^4 h^2 R^2) is 0.2 at a radius of 561 mm.
     EXPECT_TRUE(warned(cap(0.54), asPlate(), words));
@@ -395,6 +396,26 @@ TEST(ShellPatch, AWindowThatNobodyFixedStaysWithinTheTheory)
     EXPECT_LT(std::abs(patch.principal.first) * patch.window.grid.sizeX() / 8, 0.26);
     settings.theory = Theory::plate;
     EXPECT_NEAR(settledFor(tube, settings).window, 70e-3, 1e-9) << "a plate has no depth";
+}
+
+/// Dents of what is round die away before it is steep, so that its tips set no limit, see tooDeep() of the warnings.
+TEST(ShellPatch, ATipThatIsSteepKeepsNoWindowNarrow)
+{
+    const SoftObject cigar    = ellipsoid({60e-3, 20e-3, 20e-3}, 0);
+    PatchSettings    settings = kShell;
+    settings.windowOf         = WindowOf::dent;
+    settings.footprintRadius  = 2e-3;
+    const double wanted       = dentLengths(cigar, settings).value().window();
+    ASSERT_LT(wanted, 40e-3) << "which half of its places allow: its sides have a radius of 20 mm, its tips of 7";
+    EXPECT_NEAR(settledFor(cigar, settings).window, wanted, 1e-9);
+}
+
+TEST(ShellPatch, CurvatureIsKeptForOneThickness)
+{
+    const SoftObject dome = ellipsoid(glm::dvec3(50e-3), 0);
+    EXPECT_EQ(&dome.withMaterial({.thickness = 1e-3, .poissonRatio = 0.3}).curvatureNotes(), &dome.curvatureNotes());
+    EXPECT_NE(&dome.withMaterial({.thickness = 2e-3, .poissonRatio = 0.45}).curvatureNotes(), &dome.curvatureNotes())
+        << "fits do not step through the sheet, so that they depend on how thick it is";
 }
 
 TEST(ShellPatch, SaysWhyItStaysFlat)

@@ -48,25 +48,26 @@ ShellShape meanShape(const Shell& shell)
     double           most = 0;
     for (const double k : curvatures) most = std::max(most, std::abs(k));
     const auto share = [&](double k) { return most > 0 ? int(std::lround(kShares * k / most)) : 0; };
-    return {stepOf(thin, kThin),  stepOf(most * window / thin, kStep),
-            share(curvatures[0]), share(curvatures[1]),
-            share(curvatures[2]), stepOf(foundationOf(shell.bending) * std::pow(window, 4) / rigidity, kStep)};
+    return {.thin       = stepOf(thin, kThin),
+            .curved     = stepOf(most * window / thin, kStep),
+            .shares     = {share(curvatures[0]), share(curvatures[1]), share(curvatures[2])},
+            .foundation = stepOf(foundationOf(shell.bending) * std::pow(window, 4) / rigidity, kStep)};
 }
 
 Shell shellOfShape(const ShellShape& shape, const Shell& like)
 {
     const PlateGrid& grid   = like.bending.grid;
     const double     window = grid.sizeX();
-    const double     thin = valueOf(shape[0], kThin), curved = valueOf(shape[1], kStep) * thin / window;
+    const double     thin = valueOf(shape.thin, kThin), curved = valueOf(shape.curved, kStep) * thin / window;
     constexpr double kRigidity    = 1; // [N m]: it is a factor of all compliances
     Shell            shell        = like;
-    shell.bending.foundation      = valueOf(shape[5], kStep) * kRigidity / std::pow(window, 4);
+    shell.bending.foundation      = valueOf(shape.foundation, kStep) * kRigidity / std::pow(window, 4);
     shell.bending.foundationShape = {};
     shell.bending.rigidity        = NodeField(grid, kRigidity);
     shell.membraneCompliance      = NodeField(grid, std::pow(thin * window, 2) / kRigidity);
-    shell.curvatureX              = NodeField(grid, curved * shape[2] / kShares);
-    shell.curvatureZ              = NodeField(grid, curved * shape[3] / kShares);
-    shell.curvatureXZ             = NodeField(grid, curved * shape[4] / kShares);
+    shell.curvatureX              = NodeField(grid, curved * shape.shares[0] / kShares);
+    shell.curvatureZ              = NodeField(grid, curved * shape.shares[1] / kShares);
+    shell.curvatureXZ             = NodeField(grid, curved * shape.shares[2] / kShares);
     return shell;
 }
 

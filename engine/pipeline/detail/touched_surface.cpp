@@ -236,8 +236,11 @@ TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const B
     const EvenShare chosen =
         EvenShare::of(ball.ranks.size(), std::max(enough, std::size_t(std::min(all, all * step * step))));
     std::vector<std::uint32_t> some, points; // numbers in the ball; of the object
-    for (std::uint32_t k = 0; k < ball.ranks.size(); ++k)
-        if (chosen.has(ball.ranks[k])) some.push_back(k), points.push_back(ball.points[k]);
+    for (std::uint32_t k = 0; k < ball.ranks.size(); ++k) {
+        if (!chosen.has(ball.ranks[k])) continue;
+        some.push_back(k);
+        points.push_back(ball.points[k]);
+    }
     const double               sparser = std::sqrt(all / double(std::max<std::size_t>(1, some.size())));
     std::vector<std::uint32_t> numbers;
     for (const std::uint32_t k : flood.reachIn(points, contact.point, contact.outward, sparser))

@@ -6,16 +6,13 @@
 #include "engine/pipeline/compliance_table_solve.h"
 #include "engine/tools/bench/bench_plates.h"
 #include "engine/tools/bench/cpu_time.h"
+#include "engine/tools/bench/table_bench.h"
 
 namespace palp::bench {
 namespace {
 
-constexpr double     kRadius    = 4e-3; // of a footprint, and from one to the next [m]
-constexpr double     kTolerance = 1e-4; // of a scene [1]
-constexpr double     kTarget    = 1e-4; // of a compliance [1]
 constexpr double     kLengths   = 8;    // over which dents die away, in the window [1]
 constexpr double     kThickness = 1e-3; // [m]
-constexpr int        kMostNodes = 129;  // a side, beyond which no session solves tables
 constexpr PlateEdges kSupported{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
 
 /// Returns a shell with the rigidity of a plate, as curved as a sphere.
@@ -45,14 +42,14 @@ std::vector<BenchRow> measureShell(const Map& map, int nodes, int side, int runs
     plate.edges                    = kSupported;
     Plate even                     = plate;
     even.rigidity                  = NodeField(plate.grid, kSoftest);
-    const FootprintLattice lattice = solveLattice(even, {kRadius, side, 1e9}, solver, kTolerance);
+    const FootprintLattice lattice = solveLattice(even, {kTableRadius, side, 1e9}, solver, kTableTolerance);
     const Shell            shell   = sphereOf(plate, 1);
 
     double             times = 1;
     ComplianceTable    table;
     std::optional<int> steps;
     const auto         bend = [&](const auto& what) {
-        steps = solveTable(what, lattice, solver, kTolerance, table).solution.report.iterations;
+        steps = solveTable(what, lattice, solver, kTableTolerance, table).solution.report.iterations;
     };
     const std::vector<Timing> timings = takeTurns({{"a flat plate", {[&] { bend(plate); }}},
                                                    {"again", {[&] { bend(shell); }}},
@@ -60,8 +57,8 @@ std::vector<BenchRow> measureShell(const Map& map, int nodes, int side, int runs
                                                   runs);
     PlateSolver               reference("reference");
     const auto                middle = lattice.loads.size() / 2;
-    const double              error  = largestError(solver.solveFootprints(shell, lattice.loads, middle, kTolerance),
-                                                    reference.solveFootprints(shell, lattice.loads, middle, kTolerance));
+    const double error = largestError(solver.solveFootprints(shell, lattice.loads, middle, kTableTolerance),
+                                      reference.solveFootprints(shell, lattice.loads, middle, kTableTolerance));
 
     std::vector<BenchRow> rows;
     for (const std::size_t n : {1, 2}) {
@@ -70,13 +67,13 @@ std::vector<BenchRow> measureShell(const Map& map, int nodes, int side, int runs
         row.map        = map.name;
         row.nodes      = nodes;
         row.accuracy   = "1e-4 of c";
-        row.target     = kTarget;
+        row.target     = kTableTarget;
         row.loads      = side * side;
         row.peer       = "a flat plate";
         row.peerMs     = timings.front().total;
         row.palpateMs  = timings[n].total;
         row.hidden     = timings[n].hidden;
-        row.tolerance  = kTolerance;
+        row.tolerance  = kTableTolerance;
         row.iterations = steps;
         row.error      = error;
         row.note       = std::to_string(side * side) + " loads, a mean curvature " +
@@ -97,20 +94,9 @@ const std::vector<std::string>& shellCases()
 std::vector<BenchRow> measureShells(const std::string& solver, const std::vector<int>& nodes,
                                     const std::vector<std::string>& maps, int runs, const OnStep& onStep)
 {
-    const std::vector<std::string> chosen =
-        maps.empty() ? std::vector<std::string>{"linear", "wart", "disc_100"} : maps;
-    PlateSolver           opened(solver);
-    std::vector<BenchRow> rows;
-    const std::size_t     total = nodes.size() * chosen.size() * 2;
-    std::size_t           done  = 0;
-    for (const int n : nodes)
-        for (const std::string& map : chosen)
-            for (const int side : {3, 7}) {
-                onStep(done++, total);
-                if (n < 65 || n > kMostNodes) continue;
-                for (BenchRow& row : measureShell(mapNamed(map), n, side, runs, opened)) rows.push_back(std::move(row));
-            }
-    return rows;
+    PlateSolver opened(solver);
+    return overTables(nodes, maps, onStep,
+                      [&](const Map& map, int n, int side) { return measureShell(map, n, side, runs, opened); });
 }
 
 } // namespace palp::bench

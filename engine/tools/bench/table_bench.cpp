@@ -13,10 +13,7 @@
 namespace palp::bench {
 namespace {
 
-constexpr double kRadius    = 4e-3; // of a footprint, and from one to the next [m]
-constexpr double kTolerance = 1e-4; // of a scene [1]
-constexpr double kTarget    = 1e-4; // of a compliance [1]
-constexpr int    kMostNodes = 129;  // a side, beyond which no session solves tables
+constexpr int kFewestNodes = 65, kMostNodes = 129; // a side
 
 /// A direct solver that solves for all loads at once, as dense columns.
 class TablePeer {
@@ -100,13 +97,13 @@ std::vector<BenchRow> measureTable(const Map& map, int nodes, int side, int runs
     constexpr auto kAny            = 1e9; // k_c over D is not looked at
     Plate          even            = plate;
     even.rigidity                  = NodeField(plate.grid, kSoftest);
-    const FootprintLattice lattice = solveLattice(even, {kRadius, side, kAny}, solver, kTolerance);
+    const FootprintLattice lattice = solveLattice(even, {kTableRadius, side, kAny}, solver, kTableTolerance);
 
     std::vector<TablePeer>  peers = peersFor(plate, lattice);
     std::vector<Contestant> contestants;
     for (TablePeer& peer : peers) contestants.push_back(peer.onNewMap(plate));
     TableSolution solved;
-    contestants.push_back({"Palpate", {[&] { solved = solveTable(plate, lattice, solver, kTolerance); }}});
+    contestants.push_back({"Palpate", {[&] { solved = solveTable(plate, lattice, solver, kTableTolerance); }}});
     const std::vector<Timing> timings = takeTurns(contestants, runs);
 
     std::vector<BenchRow> rows;
@@ -116,7 +113,7 @@ std::vector<BenchRow> measureTable(const Map& map, int nodes, int side, int runs
         row.map       = map.name;
         row.nodes     = nodes;
         row.accuracy  = "1e-4 of c";
-        row.target    = kTarget;
+        row.target    = kTableTarget;
         row.loads     = side * side;
         row.peer      = peers[n].name();
         row.peerMs    = timings[n].total;
@@ -125,7 +122,7 @@ std::vector<BenchRow> measureTable(const Map& map, int nodes, int side, int runs
         row.partNames = {"table"};
         for (const Quartiles& part : timings[n].parts) row.peerPartsMs.push_back(part.median);
         for (const Quartiles& part : timings.back().parts) row.palpatePartsMs.push_back(part.median);
-        row.tolerance  = kTolerance;
+        row.tolerance  = kTableTolerance;
         row.iterations = solved.middle.report.iterations;
         row.workUnits  = solved.middle.report.workUnits;
         // The first peer is the best of them; its own error is that of doubles, 1e-9 on these grids.
@@ -139,6 +136,24 @@ std::vector<BenchRow> measureTable(const Map& map, int nodes, int side, int runs
 
 } // namespace
 
+std::vector<BenchRow> overTables(const std::vector<int>& nodes, const std::vector<std::string>& maps,
+                                 const OnStep& onStep, const MeasureTable& measure)
+{
+    const std::vector<std::string> chosen =
+        maps.empty() ? std::vector<std::string>{"linear", "wart", "disc_100"} : maps;
+    std::vector<BenchRow> rows;
+    const std::size_t     total = nodes.size() * chosen.size() * 2;
+    std::size_t           done  = 0;
+    for (const int n : nodes)
+        for (const std::string& map : chosen)
+            for (const int side : {3, 7}) {
+                onStep(done++, total);
+                if (n < kFewestNodes || n > kMostNodes) continue;
+                for (BenchRow& row : measure(mapNamed(map), n, side)) rows.push_back(std::move(row));
+            }
+    return rows;
+}
+
 const std::vector<std::string>& tableCases()
 {
     static const std::vector<std::string> names{"table"};
@@ -148,20 +163,9 @@ const std::vector<std::string>& tableCases()
 std::vector<BenchRow> measureTables(const std::string& solver, const std::vector<int>& nodes,
                                     const std::vector<std::string>& maps, int runs, const OnStep& onStep)
 {
-    const std::vector<std::string> chosen =
-        maps.empty() ? std::vector<std::string>{"linear", "wart", "disc_100"} : maps;
-    PlateSolver           opened(solver);
-    std::vector<BenchRow> rows;
-    const std::size_t     total = nodes.size() * chosen.size() * 2;
-    std::size_t           done  = 0;
-    for (const int n : nodes)
-        for (const std::string& map : chosen)
-            for (const int side : {3, 7}) {
-                onStep(done++, total);
-                if (n < 65 || n > kMostNodes) continue;
-                for (BenchRow& row : measureTable(mapNamed(map), n, side, runs, opened)) rows.push_back(std::move(row));
-            }
-    return rows;
+    PlateSolver opened(solver);
+    return overTables(nodes, maps, onStep,
+                      [&](const Map& map, int n, int side) { return measureTable(map, n, side, runs, opened); });
 }
 
 } // namespace palp::bench
