@@ -64,11 +64,12 @@ std::optional<DentLengths> lengthsOf(const SoftObject& object, const PatchSettin
     return DentLengths{found.front(), found[found.size() / 2], found.back()};
 }
 
-/// Returns the width of a window that sags no more than it may at this share of the places [m].
-double shallowWindow(std::vector<Bend> bends, double share)
+/// Returns the width of a window that sags no more than it may at nearly all places [m].
+double shallowWindow(std::vector<Bend> bends)
 {
+    constexpr double kNearly = 0.95; // rims and tips bend as sharply as the fits can tell [1]
     if (bends.empty()) return std::numeric_limits<double>::infinity();
-    const auto sharp = bends.begin() + std::ptrdiff_t(share * double(bends.size() - 1));
+    const auto sharp = bends.begin() + std::ptrdiff_t(kNearly * double(bends.size() - 1));
     std::ranges::nth_element(bends, sharp, {}, &Bend::largest);
     return 8 * kMostSag / sharp->largest;
 }
@@ -82,13 +83,11 @@ std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSett
 
 double dentWindow(const SoftObject& object, const PatchSettings& settings)
 {
-    const auto   bends   = bendsOf(object, settings);
-    const auto   lengths = lengthsOf(object, settings, bends);
-    const double least   = 4 * settings.footprintRadius;
-    const double window  = lengths ? std::max(lengths->window(), least) : settings.window;
-    // Where dents die away they hardly feel what is steep, see patch_warnings.cpp, and edges that are nearer are felt more.
-    constexpr double kNearly = 0.95, kHalf = 0.5; // rims and tips bend as sharply as the fits can tell [1]
-    return std::min(window, std::max(shallowWindow(bends, lengths ? kHalf : kNearly), least));
+    const auto   bends = bendsOf(object, settings);
+    const double least = 4 * settings.footprintRadius;
+    // A dent that dies away hardly feels what is steep, see patch_warnings.cpp, and would feel edges that are nearer.
+    if (const auto lengths = lengthsOf(object, settings, bends)) return std::max(lengths->window(), least);
+    return std::min(settings.window, std::max(shallowWindow(bends), least));
 }
 
 } // namespace palp

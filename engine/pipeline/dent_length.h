@@ -30,9 +30,9 @@ struct DentLengths {
 /// \source the shallow shell's l of Reissner 1946, with a foundation added to the membrane's
 [[nodiscard]] std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings);
 
-/// Returns how wide the patch window of WindowOf::dent is [m]: as most places of the object ask for, or as the settings say
-/// where nothing ends a dent; of shells no wider than kMostSag allows at half of the places, or where nothing ends a dent at
-/// all but a twentieth; and at least four radii of the fingertip.
+/// Returns how wide the patch window of WindowOf::dent is [m]: as most places of the object ask for, and at least four radii
+/// of the fingertip. Where nothing ends a dent it is as the settings say, but of shells no wider than kMostSag allows at all
+/// but a twentieth of the places.
 /// \note as dentLengths()
 [[nodiscard]] double dentWindow(const SoftObject& object, const PatchSettings& settings);
 

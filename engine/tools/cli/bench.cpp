@@ -169,7 +169,7 @@ void runBench(const BenchOptions& o)
     const BenchReport report = measure(o);
     if (report.rows.empty())
         throw Error(
-            "--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update is for 65 to 129");
+            "--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update, table and shell are for 65 to 129");
     if (!o.out.empty()) {
         makeFolder(o.out);
         const std::filesystem::path folder = o.out;
