@@ -99,7 +99,7 @@ int makeDraft(const std::filesystem::path& path, std::filesystem::path& draft)
     constexpr int     kMostNames = 1000;
     const std::string stem       = path.string() + "." + std::to_string(::getpid());
     for (int name = 0; name < kMostNames; ++name) {
-        draft            = stem + (name == 0 ? "" : "." + std::to_string(name)) + ".part";
+        draft            = name == 0 ? stem + ".part" : stem + '.' + std::to_string(name) + ".part";
         const int handle = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (handle >= 0 || errno != EEXIST) return handle;
     }
