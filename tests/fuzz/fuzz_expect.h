@@ -26,13 +26,21 @@ inline void fuzzExpectSentence(const std::string& text)
     static_cast<void>(nlohmann::json(text).dump()); // throws where it is no UTF-8
 }
 
+/// What was refused and what was not: seeds that are all refused would test nothing behind a reader's first line.
+struct FuzzVerdicts {
+    std::size_t refused = 0, accepted = 0;
+};
+inline FuzzVerdicts fuzzVerdicts;
+
 /// Does what may be refused: an Error is a right answer if it is such a sentence, and nothing else may come out.
 template <class Act>
 void fuzzRefusals(const Act& act)
 {
     try {
         act();
+        ++fuzzVerdicts.accepted;
     } catch (const Error& error) {
+        ++fuzzVerdicts.refused;
         fuzzExpectSentence(error.what());
     }
 }

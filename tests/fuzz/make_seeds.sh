@@ -113,7 +113,7 @@ printf 'HTTP/1.1 101 Switching Protocols\r\nSec-WebSocket-Accept: s3pPLMBiTxaQ9k
 
 cat >plan/all <<END
 {"title": "t", "seed": 7, "seconds": 5, "hand": "press", "repetitions": 2, // a comment
- "conditions": [{"name": "even", "scene": {"cloud": "sample:sheet"}, "values": {"stiffness": 3e5}},
+ "conditions": [{"name": "even", "scene": "a.json", "values": {"thickness": "3 mm"}},
   {"name": "wart", "scene": "a.json", "preset": "paper"}],
  "tasks": [{"name": "r", "kind": "rating", "statement": "s", "least": "a", "most": "b"},
   {"name": "y", "kind": "yes-no", "question": "q?", "yes_for": ["wart"], "no_for": ["even"]},
@@ -122,8 +122,8 @@ END
 printf '{"nodules": [{"at": [0, 1e-3, 0], "radius": "4 mm", "modulus": "3 MPa", "depth": "2 mm"}], "press_force": "0.2 N", "too_hard": 2, "ground": 0.02}' >hunt/listed
 printf '{"random": {"count": 4, "radius": ["3 mm", "6 mm"], "modulus": [6e5, 3e6], "depth": ["1 mm", "5 mm"]}}' >hunt/random
 
-trials='participant,trial,block,task,kind,condition,condition_second,question,answer,correct,reaction_time_s,seed,session,session_second,mean_force_N,peak_force_N,version\r\n'
-printf "$trials"'p1,1,1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/1a,,0.5,1.5,0.1.0\r\np1,2,1,cut' >trials/cut
+trials='participant,trial,block,task,kind,condition,condition_second,question,answer,correct,reaction_time_s,seed,session,session_second,force_mean_N,force_peak_N,version\n'
+printf "$trials"'p1,1,1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/1a,,0.5,1.5,0.1.0\np1,2,1,cut' >trials/cut
 printf "$trials" >trials/empty
 
 # The first byte says which file of a recording it is. Rows of 64 bytes.

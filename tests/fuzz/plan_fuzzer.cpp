@@ -4,8 +4,20 @@
 
 #include "engine/tools/study/study_plan.h"
 #include "tests/fuzz/fuzz_expect.h"
+#include "tests/support/temporary_folder.h"
 
 namespace {
+
+/// The folder of a plan, with the scene that its conditions may name.
+class Folder {
+public:
+    Folder() { static_cast<void>(folder_.write("a.json", R"({"cloud": "sample:sheet"})")); }
+
+    [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
+
+private:
+    palp::TemporaryFolder folder_;
+};
 
 /// What must hold of every plan that is accepted: something is asked of somebody, names are unique, pairs are known.
 void check(const palp::study::StudyPlan& plan)
@@ -23,8 +35,10 @@ void check(const palp::study::StudyPlan& plan)
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
+    static const Folder kFolder;
     palp::fuzzRefusals([&] {
-        check(palp::study::parsePlan(std::string_view(reinterpret_cast<const char*>(data), size), "fuzz", "."));
+        const std::string_view text(reinterpret_cast<const char*>(data), size);
+        check(palp::study::parsePlan(text, "fuzz", kFolder.path()));
     });
     return 0;
 }

@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <new>
 #include <string>
 #include <vector>
@@ -17,6 +19,11 @@
 // palp_fuzz_replay SEEDS...: gives each harness the seeds of its folder in SEEDS, whole, cut short, and with single bytes
 // changed. It needs no clang, so that every machine runs it. It also measures memory: a reader that believes a header asks
 // for more than its input can hold.
+//
+// palp_fuzz_replay --linear SHORT LONG: compares the time that each harness takes for an input and for one with kLonger
+// times as many records, of make_long.py.
+
+#include "tests/fuzz/fuzz_expect.h"
 
 #define PALPATE_HARNESS(name) extern "C" int fuzz_##name(const std::uint8_t*, std::size_t);
 #include "fuzz_harnesses.def"
@@ -40,6 +47,9 @@ std::atomic<std::size_t> live{0}, peak{0}; // [bytes] that operator new gave
 /// [bytes] of memory for each byte of an input. A point of a file in text takes 8 bytes ("1 2 3 4\n") and 56 in memory,
 /// twice while it is sorted and once more as it is written back; a harness holds its input twice.
 constexpr std::size_t kMostPerByte = 24;
+/// [bytes] the same of .glb, whose points have 12 bytes, and no stiffness: read, written and read again they are several
+/// times as many.
+constexpr std::size_t kMostPerByteOfGlb = 40;
 /// [bytes] beside it: buffers of streams, the table of keys, zlib's window.
 constexpr std::size_t kMostBeside = std::size_t(512) << 10;
 /// [bytes] the same of the C interface, whose objects have plates of 8 cells, a solver and a session with its thread.
@@ -73,8 +83,10 @@ public:
         harness_.run(bytes.data(), bytes.size());
         const std::size_t taken = peak - before;
         most_                   = std::max(most_, taken);
-        const bool isInterface = std::string(harness_.name) == "capi";
-        if (taken > (isInterface ? kMostOfInterface : kMostBeside) + kMostPerByte * bytes.size()) {
+        const std::string name    = harness_.name;
+        const std::size_t beside  = name == "capi" ? kMostOfInterface : kMostBeside;
+        const std::size_t perByte = name == "glb" ? kMostPerByteOfGlb : kMostPerByte;
+        if (taken > beside + perByte * bytes.size()) {
             std::fprintf(stderr, "%zu bytes of memory for an input of %zu\n", taken, bytes.size());
             std::abort();
         }
@@ -103,10 +115,55 @@ private:
     std::size_t  inputs_ = 0, most_ = 0;
 };
 
+constexpr double kLonger = 16; ///< records of a long input over those of a short one [1]
+/// What a reader may take for the long one, over kLonger times what it takes for the short one [1]: a short input fits into
+/// the caches, a long one does not. One whose time grows with the square would take 16 times as long, not 3.
+constexpr double kMostOver = 3;
+/// A harness that takes less than this for the long input over the short one has refused it, or not read it to its end [1].
+constexpr double kRead = 2;
+
+/// Returns the least processor time of several runs over the bytes [s].
+double secondsOf(Replay& replay, const std::vector<std::uint8_t>& bytes, int runs)
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < runs; ++n) {
+        const std::clock_t began = std::clock();
+        replay.whole(bytes);
+        least = std::min(least, double(std::clock() - began) / CLOCKS_PER_SEC);
+    }
+    return least;
+}
+
 std::vector<std::uint8_t> contentsOf(const std::filesystem::path& path)
 {
     std::ifstream file(path, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
+}
+
+std::vector<std::uint8_t> longOne(const char* folder, const Named& harness)
+{
+    return contentsOf(std::filesystem::path(folder) / harness.name / "long");
+}
+
+/// Returns whether every harness takes a time in proportion to its input.
+bool isLinear(const char* shorts, const char* longs)
+{
+    bool good = true;
+    for (const Named& harness : kHarnesses) {
+        Replay       replay(harness);
+        const auto   few = longOne(shorts, harness), many = longOne(longs, harness);
+        const double brief = secondsOf(replay, few, 7), lasting = secondsOf(replay, many, 3);
+        palp::fuzzVerdicts = {};
+        replay.whole(few);
+        const bool taken = palp::fuzzVerdicts.accepted > 0 || palp::fuzzVerdicts.refused == 0;
+        const bool read = taken && lasting > kRead * brief, linear = lasting < kMostOver * kLonger * brief;
+        std::printf("%-10s %8zu bytes in %9.3f ms, %8zu in %9.3f ms: %5.1f times, at most %4zu KiB of memory%s\n",
+                    harness.name, few.size(), 1e3 * brief, many.size(), 1e3 * lasting, lasting / brief,
+                    replay.most() >> 10U,
+                    !read ? ": FAILED: it was not read" : linear ? "" : ": FAILED: more than in proportion");
+        good = good && read && linear;
+    }
+    return good;
 }
 
 } // namespace
@@ -134,15 +191,21 @@ int main(int count, char** arguments)
 {
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, keep);
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
+    if (count == 4 && std::string(arguments[1]) == "--linear") return isLinear(arguments[2], arguments[3]) ? 0 : 1;
+    bool failed = false;
     for (const Named& harness : kHarnesses) {
         Replay      replay(harness);
         std::size_t seeds = 0;
+        palp::FuzzVerdicts wholes; // on seeds as they are
         for (int n = 1; n < count; ++n) {
             const auto folder = std::filesystem::path(arguments[n]) / harness.name;
             if (!std::filesystem::is_directory(folder)) continue;
             for (const auto& file : std::filesystem::directory_iterator(folder)) {
                 const auto bytes = contentsOf(file.path());
+                palp::fuzzVerdicts = {};
                 replay.whole(bytes);
+                wholes.accepted += palp::fuzzVerdicts.accepted;
+                wholes.refused += palp::fuzzVerdicts.refused;
                 replay.damaged(bytes);
                 ++seeds;
             }
@@ -153,6 +216,10 @@ int main(int count, char** arguments)
             std::fprintf(stderr, "%s: FAILED: there is no seed for it\n", harness.name);
             return 1;
         }
+        if (wholes.accepted == 0 && wholes.refused > 0) {
+            std::fprintf(stderr, "%s: FAILED: every seed is refused\n", harness.name);
+            failed = true;
+        }
     }
-    return 0;
+    return failed ? 1 : 0;
 }

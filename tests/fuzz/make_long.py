@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""Writes, for each reader, a file that it reads to its end and that is as long as asked for.
+
+usage: make_long.py FOLDER RECORDS
+
+A record is a point, a row, a tick, a message, or a comment where a file may hold only a few of anything. Two such folders
+let palp_fuzz_replay --linear compare how long a reader takes for either.
+"""
+import base64
+import json
+import math
+import pathlib
+import struct
+import sys
+
+
+def points(count):
+    """A sheet of points a millimetre apart with a stiffness each, no two in one place."""
+    side = math.isqrt(count - 1) + 1
+    return [(n // side * 1e-3, n % side * 1e-3, 1e-6 * (n % 7), 3e5 + n % 11) for n in range(count)]
+
+
+def triangles(count):
+    return [(n, n + 1, n + 2) for n in range(count - 2)]
+
+
+def npy(values, shape, letter="d"):
+    head = f"{{'descr': '<f8', 'fortran_order': False, 'shape': {shape}, }}".ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + struct.pack(f"<{len(values)}{letter}", *values)
+
+
+def ply(count):
+    head = (f"ply\nformat ascii 1.0\nelement vertex {count}\nproperty float x\nproperty float y\nproperty float z\n"
+            f"property double stiffness\nelement face {count - 2}\nproperty list uchar int vertex_indices\nend_header\n")
+    return head + "".join("%g %g %g %g\n" % p for p in points(count)) + "".join("3 %d %d %d\n" % t for t in triangles(count))
+
+
+def pcd(count):
+    return (f"VERSION .7\nFIELDS x y z E\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\nWIDTH {count}\nHEIGHT 1\n"
+            f"VIEWPOINT 0 0 0 1 0 0 0\nPOINTS {count}\nDATA ascii\n" + "".join("%g %g %g %g\n" % p for p in points(count)))
+
+
+def text(count):
+    return "# length_unit m\nx,y,z,E\n" + "".join("%g,%g,%g,%g\n" % p for p in points(count))
+
+
+def obj(count):
+    return "".join("v %g %g %g\n" % p[:3] for p in points(count)) + "".join("f %d %d %d\n" % tuple(k + 1 for k in t) for t in triangles(count))
+
+
+def stl(count):
+    at = points(count)
+    facets = "".join("facet normal 0 0 1\nouter loop\n" + "".join("vertex %g %g %g\n" % at[k][:3] for k in t) + "endloop\nendfacet\n"
+                     for t in triangles(count))
+    return "solid long\n" + facets + "endsolid long\n"
+
+
+def glb(count):
+    raw = b"".join(struct.pack("<3f", *p[:3]) for p in points(count))
+    description = json.dumps({
+        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": count // 3 * 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(raw)}], "buffers": [{"byteLength": len(raw)}]}).encode()
+    description += b" " * (-len(description) % 4)
+    return (struct.pack("<4sII", b"glTF", 2, 28 + len(description) + len(raw)) + struct.pack("<I4s", len(description), b"JSON")
+            + description + struct.pack("<I4s", len(raw), b"BIN\0") + raw)
+
+
+def volume(count):
+    side = max(2, round(count ** (1 / 3)))
+    middle, values = (side - 1) / 2, []
+    for i in range(side):
+        for j in range(side):
+            for k in range(side):
+                values.append(1e6 if math.dist((i, j, k), (middle, middle, middle)) < 0.8 * middle else 0.0)
+    return npy(values, (side, side, side))
+
+
+def vtk(count):
+    faces = triangles(count)
+    return ("# vtk DataFile Version 3.0\nlong\nASCII\nDATASET POLYDATA\n" + f"POINTS {count} float\n"
+            + "".join("%g %g %g\n" % p[:3] for p in points(count)) + f"POLYGONS {len(faces)} {4 * len(faces)}\n"
+            + "".join("3 %d %d %d\n" % t for t in faces) + f"POINT_DATA {count}\nSCALARS E float\nLOOKUP_TABLE default\n"
+            + "".join("%g\n" % p[3] for p in points(count)))
+
+
+def vtk_xml(count):
+    raw = b"".join(struct.pack("<3f", *p[:3]) for p in points(count))
+    place = base64.b64encode(struct.pack("<I", len(raw)) + raw).decode()
+    stiffness = " ".join("%g" % p[3] for p in points(count))
+    return ('<?xml version="1.0"?><VTKFile type="PolyData" byte_order="LittleEndian" header_type="UInt32"><PolyData>'
+            f'<Piece NumberOfPoints="{count}"><PointData><DataArray type="Float32" Name="E" format="ascii">{stiffness}</DataArray>'
+            '</PointData><Points><DataArray type="Float32" NumberOfComponents="3" format="binary">' + place
+            + "</DataArray></Points></Piece></PolyData></VTKFile>")
+
+
+def commented(document, count):
+    """Where a file holds a few dozen of anything at most, its comments can be long."""
+    return "// a line of a comment, as people write them\n" * count + json.dumps(document)
+
+
+SCENE = {"cloud": "sample:sheet", "window": "40 mm", "cells": 32}
+
+
+def problem(count):
+    return json.dumps({"size": [1, 1], "cells": [4, 4], "poisson": 0.3, "rigidity": {"law": "constant", "value": 2},
+                       "load": {"law": "uniform", "pressure": 3},
+                       "probes": [[0.1 + 0.8 * n / count, 0.5] for n in range(count)]})
+
+
+def plan(count):
+    return commented({"title": "t", "conditions": [{"name": "even", "scene": "a.json"}],
+                      "tasks": [{"name": "r", "kind": "rating", "statement": "s", "least": "a", "most": "b"}]}, count)
+
+
+def hunt(count):
+    return commented({"random": {"count": 4, "radius": ["3 mm", "6 mm"], "modulus": [6e5, 3e6]}}, count)
+
+
+def trials(count):
+    head = ("participant,trial,block,task,kind,condition,condition_second,question,answer,correct,reaction_time_s,seed,session,"
+            "session_second,force_mean_N,force_peak_N,version\n")
+    return head + "".join(f'p1,{n + 1},1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/{n + 1}a,,0.5,1.5,0.1.0\n' for n in range(count))
+
+
+def hand(count):
+    return "time,x,y,z\n" + "".join("%g,%g,0,0.01\n" % (n * 1e-3, n * 1e-6) for n in range(count))
+
+
+def recording(count):
+    head = ("{'descr': [('time', '<f8'), ('hip', '<f8', (3,)), ('hip_velocity', '<f8', (3,)), ('missed', '<i4'), "
+            f"('device', '<u4')], 'fortran_order': False, 'shape': ({count},), }}").ljust(245) + "\n"
+    rows = b"".join(struct.pack("<7d2I", n * 1e-3, 0, 0, 0.01, 0, 0, 0, 0, 0) for n in range(count))
+    return b"t\x93NUMPY\x01\x00" + struct.pack("<H", len(head)) + head.encode() + rows
+
+
+def haply(count):
+    device = {"device_id": "049D", "state": {"cursor_position": {"x": 0.01, "y": -0.02, "z": 0},
+                                             "cursor_velocity": {"x": 0, "y": 0, "z": 0}}}
+    return json.dumps({"inverse3": [device] * count})
+
+
+def capi(count):
+    return b"s" + b"".join(struct.pack("<4d4fBB", 1e-3, 4e-3, 4e-3, 1e-3, 0, 0, 0, 0, 0, 0) for n in range(count))
+
+
+FORMATS = {
+    "ply": ply, "pcd": pcd, "text": text, "obj": obj, "stl": stl, "glb": glb, "volume": volume, "vtk": vtk, "vtk_xml": vtk_xml,
+    "npy": lambda count: npy([1.0] * (count // 2 * 2), (2, count // 2)),
+    "npy_cloud": lambda count: npy([value for p in points(count) for value in p], (count, 4)),
+    "problem": problem, "scene": lambda count: commented(SCENE, count), "plan": plan, "hunt": hunt, "trials": trials,
+    "hand": hand, "recording": recording, "haply": haply, "capi": capi,
+    "bridge": lambda count: (b"\x01PB\x11\x01\x00\x06\x00" + bytes(56)) * count,
+    "falcon": lambda count: "<AAAABBBBPPPPADA>" * count,
+    "probes": lambda count: "depth,force\n" + "".join("%g,%g\n" % (n * 1e-7, n * 1e-4) for n in range(count)),
+}
+
+
+def main():
+    folder, count = pathlib.Path(sys.argv[1]), int(sys.argv[2])
+    for name, write in FORMATS.items():
+        content = write(count)
+        (folder / name).mkdir(parents=True, exist_ok=True)
+        (folder / name / "long").write_bytes(content if isinstance(content, bytes) else content.encode())
+
+
+main()
