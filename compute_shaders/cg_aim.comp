@@ -16,30 +16,15 @@ layout(std430, binding = 4) coherent buffer Partials { real partials[]; };
 layout(std430, binding = 5) coherent buffer Tickets { uint tickets[]; };
 layout(std430, binding = 6) buffer State { real state[]; };
 
-#include "compute_shaders/cg_last_group.glsl"
-#include "compute_shaders/cg_load.glsl"
+#include "compute_shaders/cg_aimed.glsl"
 
 void main()
 {
-    uint load = gl_GlobalInvocationID.z, base = load * push.nodes, groups = groupsOfLoad();
+    uint load = gl_GlobalInvocationID.z, base = load * push.nodes;
     real rz = real(0.0f), fx = real(0.0f);
-    for (uint n = gl_GlobalInvocationID.x; n < push.nodes; n += groups * gl_WorkGroupSize.x) {
+    for (uint n = gl_GlobalInvocationID.x; n < push.nodes; n += groupsOfLoad() * gl_WorkGroupSize.x) {
         rz += r[base + n] * real(z[base + n]);
         fx += real(f[base + n]) * x[base + n];
     }
-    rz = sumOverGroup(rz);
-    fx = sumOverGroup(fx);
-    if (gl_LocalInvocationIndex == 0u) {
-        partials[2u * (load * groups + groupOfLoad())]      = rz;
-        partials[2u * (load * groups + groupOfLoad()) + 1u] = fx;
-    }
-    if (!isLastGroup(load)) return;
-    rz = fx = real(0.0f);
-    for (uint n = gl_LocalInvocationIndex; n < groups; n += lanesOfGroup()) {
-        rz += partials[2u * (load * groups + n)];
-        fx += partials[2u * (load * groups + n) + 1u];
-    }
-    rz = sumOverGroup(rz);
-    fx = sumOverGroup(fx);
-    if (gl_LocalInvocationIndex == 0u) beginStep(int(load) * kStateWords, rz, fx, push.begins);
+    aim(load, rz, fx, push.begins);
 }

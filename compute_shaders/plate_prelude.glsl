@@ -8,11 +8,7 @@
 
 layout(local_size_x_id = 0, local_size_y_id = 1, local_size_z_id = 2) in;
 
-#ifdef PALPATE_DOUBLE
-#define real double
-#else
-#define real float
-#endif
+#include "compute_shaders/plate_real.glsl"
 
 int nodesX(PlateLevel g) { return g.cellsX + 1; }
 int nodesZ(PlateLevel g) { return g.cellsZ + 1; }

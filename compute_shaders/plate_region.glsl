@@ -5,12 +5,11 @@
 // dispatch, at the price of computing the rim twice or more often. The result equals that of sweep after sweep of
 // plate_relax.comp, to the bit.
 //
-// The includer declares D, inverseDivisor and force, and  PlateLevel region(),  which returns the level.
-
-#include "compute_shaders/shared/region_layout.h"
+// The includer declares D and inverseDivisor, kBeyond, the nodes beyond its own ones on which it needs the result too,
+// and  PlateLevel region(), float forceAt(int i, int j),  which return the level and its forces.
 
 layout(constant_id = 3) const int kSweeps = 2; // before, or after, the correction
-const int kRim = kRimPerSweep * kSweeps; // [nodes]
+const int kRim = kRimPerSweep * kSweeps + kBeyond; // [nodes]
 const int kOwned = kRegion - 2 * kRim; // nodes along either side of the part that a workgroup owns
 
 shared float tile[kRegion * kRegion];
@@ -57,10 +56,9 @@ void relaxRegion(uint colour, int margin)
     for (int k = 0; k < kMostPerLane; ++k) {
         int   n = lane + k * kLanes;
         ivec2 at = nthOfColour(n, margin, colour);
-        if (n < count && isNode(at.x, at.y)) {
-            int node = nodeAt(at.x, at.y);
-            fresh[k] = relaxed(deflection(at.x, at.y), force[base + node], operatorAt(g, at.x, at.y), inverseDivisor[node]);
-        }
+        if (n < count && isNode(at.x, at.y))
+            fresh[k] = relaxed(deflection(at.x, at.y), forceAt(at.x, at.y), operatorAt(g, at.x, at.y),
+                               inverseDivisor[nodeAt(at.x, at.y)]);
     }
     barrier();
     for (int k = 0; k < kMostPerLane; ++k) {

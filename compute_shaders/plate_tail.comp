@@ -4,11 +4,6 @@
 //            inverse of the coarsest level's matrix, column after column, as pairs of floats; force of the first level
 // Writes     deflection of the first level, 0 on held nodes; deflections put aside on the way down, each invocation its
 //            own nodes'
-//
-// A dispatch on a small level costs mainly the wait for it, so a cycle on all small levels is one dispatch. Invocations
-// exchange numbers through shared memory only. Sweeps, residual and transfers equal those of single dispatches, to the
-// bit; the coarsest level is solved by its inverse, which invocations share better than substitution. It is summed as
-// accurately as in doubles, by pairs of floats: on many GPUs a double takes 32 to 64 times as long as a float.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile
@@ -18,165 +13,22 @@
 #include "compute_shaders/shared/tail_level.h"
 
 layout(constant_id = 3) const int kSweeps = 2; // before and after the correction
-const int kLanes = int(gl_WorkGroupSize.x);
 
 layout(push_constant) uniform Constants { TailPush push; };
-layout(std430, binding = 0) readonly buffer Levels { TailLevel levels[]; };
-layout(std430, binding = 1) readonly buffer Rigidity { float D[]; };
-layout(std430, binding = 2) readonly buffer Divisor { float inverseDivisor[]; };
-layout(std430, binding = 3) readonly buffer TableX { float tablesX[]; };
-layout(std430, binding = 4) readonly buffer TableZ { float tablesZ[]; };
-layout(std430, binding = 5) readonly buffer Inverse { FloatPair inverse[]; };
 layout(std430, binding = 6) readonly buffer Force { float force[]; };
-layout(std430, binding = 7) buffer Aside { float aside[]; };
 layout(std430, binding = 8) writeonly buffer Deflection { float w[]; };
 
-shared float pool[kTailPool];
+float givenForce(int node);
 
-int       load, level;
-TailLevel here;  // the level that is worked on
-TailLevel below; // the next coarser one, if there is one
+#include "compute_shaders/plate_tail.glsl"
 
-int   nodesOf(PlateLevel g) { return nodesX(g) * nodesZ(g); }
-int   nodeAt(int i, int j) { return i * nodesZ(here.plate) + j; }
-float rigidity(int i, int j) { return D[here.field + nodeAt(i, j)]; }
-float foundationShape(int i, int j) { return D[here.plate.shapeAt + here.field + nodeAt(i, j)]; }
-float deflection(int i, int j) { return pool[here.w + nodeAt(i, j)]; }
-float otherColour(int i, int j) { return deflection(i, j); }
-float tableX(int n) { return tablesX[here.tableX + n]; }
-float tableZ(int n) { return tablesZ[here.tableZ + n]; }
-float fineValue(int i, int j) { return deflection(i, j); }
-float coarseValue(int i, int j) { return pool[below.w + i * nodesZ(below.plate) + j]; }
-
-#define PALPATE_PROLONGS
-#define PALPATE_RESTRICTS
-#include "compute_shaders/shared/transfer_layout.h"
-#include "compute_shaders/shared/plate_transfer.h"
-#include "compute_shaders/shared/plate_grid.h"
-#include "compute_shaders/shared/plate_operator.h"
-#include "compute_shaders/shared/plate_relax.h"
-
-void enter(int l)
-{
-    level = l;
-    here = levels[l];
-    if (l + 1 < int(push.levels)) below = levels[l + 1];
-}
-
-float forceAt(int node)
-{
-    return level == int(push.first) ? force[load * nodesOf(here.plate) + node] : pool[here.force + node];
-}
-
-int asideAt(int node) { return load * int(push.nodes) + here.field + node; }
-
-ivec2 nthOfColour(int n, uint colour)
-{
-    int rowHalf = here.plate.cellsZ / 2 + 1, i = n / rowHalf;
-    return ivec2(i, 2 * (n % rowHalf) + int((uint(i) + colour) & 1u));
-}
-
-bool isNode(ivec2 at) { return at.x <= here.plate.cellsX && at.y <= here.plate.cellsZ; }
-
-// Relaxes the nodes of a colour, or puts what is left of their forces aside. All new values are computed before any is
-// written: a node's neighbours of its own colour are those from before. The only call of the operator: a driver takes
-// seconds to compile each one that stands within loops.
-void treatColour(uint colour, bool relaxes)
-{
-    const int kMost = (kTailHalf + kLanes - 1) / kLanes;
-    float fresh[kMost];
-    int lane = int(gl_LocalInvocationID.x);
-    for (int k = 0; k < kMost; ++k) {
-        ivec2 at = nthOfColour(lane + k * kLanes, colour);
-        if (isNode(at)) {
-            int node = nodeAt(at.x, at.y);
-            float load = forceAt(node), w = operatorAt(here.plate, at.x, at.y);
-            if (relaxes)
-                fresh[k] = relaxed(deflection(at.x, at.y), load, w, inverseDivisor[here.field + node]);
-            else
-                aside[asideAt(node)] = isHeld(here.plate, at.x, at.y) ? 0.0f : load - w;
-        }
-    }
-    barrier();
-    for (int k = 0; k < kMost; ++k) {
-        ivec2 at = nthOfColour(lane + k * kLanes, colour);
-        if (relaxes && isNode(at)) pool[here.w + nodeAt(at.x, at.y)] = fresh[k];
-    }
-    barrier();
-}
-
-int nodesOfColour() { return nodesX(here.plate) * (here.plate.cellsZ / 2 + 1); } // at most, see nthOfColour()
-
-void swapWithAside(uint colour)
-{
-    for (int n = int(gl_LocalInvocationID.x); n < nodesOfColour(); n += kLanes) {
-        ivec2 at = nthOfColour(n, colour);
-        if (isNode(at)) {
-            int node = nodeAt(at.x, at.y);
-            float left = aside[asideAt(node)];
-            aside[asideAt(node)] = pool[here.w + node];
-            pool[here.w + node] = left;
-        }
-    }
-}
-
-// On the way down a level begins with the half sweep from zero deflection that needs no operator, on the way up with
-// the correction.
-void begin(uint colour, bool down)
-{
-    for (int n = int(gl_LocalInvocationID.x); n < nodesOfColour(); n += kLanes) {
-        ivec2 at = nthOfColour(n, colour);
-        if (isNode(at)) {
-            int node = nodeAt(at.x, at.y);
-            if (down)
-                pool[here.w + node] = colour == 0u ? forceAt(node) * inverseDivisor[here.field + node] : 0.0f;
-            else
-                pool[here.w + node] = aside[asideAt(node)] + prolongedAt(at.x, at.y);
-        }
-    }
-}
-
-// The residual takes the deflection's place, and goes on to the level below as force.
-void passOn()
-{
-    [[dont_unroll]] for (uint colour = 0u; colour < 2u; ++colour) swapWithAside(colour);
-    barrier();
-    for (int n = int(gl_LocalInvocationID.x); n < nodesOf(below.plate); n += kLanes)
-        pool[below.force + n] = restrictedAt(n / nodesZ(below.plate), n % nodesZ(below.plate), nodesX(here.plate),
-                                             nodesZ(here.plate));
-    barrier();
-}
-
-void solveCoarsest()
-{
-    int nodes = nodesOf(here.plate);
-    for (int n = int(gl_LocalInvocationID.x); n < nodes; n += kLanes) {
-        FloatPair sum = FloatPair(0.0f, 0.0f);
-        for (int m = 0; m < nodes; ++m) sum = plusProduct(sum, inverse[m * nodes + n], forceAt(m));
-        pool[here.w + n] = sum.high;
-    }
-    barrier();
-}
+float givenForce(int node) { return force[load * nodesOf(here.plate) + node]; }
 
 void main()
 {
-    int first = int(push.first), last = int(push.levels) - 1;
     load = int(gl_WorkGroupID.z);
-    [[dont_unroll]] for (int visit = first; visit <= 2 * last - first; ++visit) {
-        bool down = visit < last;
-        enter(down ? visit : 2 * last - visit);
-        if (visit == last) {
-            solveCoarsest();
-            continue;
-        }
-        [[dont_unroll]] for (uint colour = 0u; colour < 2u; ++colour) begin(colour, down);
-        barrier();
-        // Half sweeps of colours 1, 0, 1 ...; down, two more of both colours for the residual.
-        int sweeps = down ? 2 * kSweeps - 1 : 2 * kSweeps;
-        [[dont_unroll]] for (int turn = 1; turn <= sweeps + (down ? 2 : 0); ++turn)
-            treatColour(uint(turn & 1), turn <= sweeps);
-        if (down) passOn();
-    }
+    first = int(push.first);
+    runCycle();
     int nodes = nodesOf(here.plate);
     for (int n = int(gl_LocalInvocationID.x); n < nodes; n += kLanes) w[load * nodes + n] = pool[here.w + n];
 }

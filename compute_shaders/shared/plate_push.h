@@ -32,6 +32,12 @@ struct TransferPush {
     PlateLevel coarse;
 };
 
+struct UpPush {
+    PlateLevel fine;
+    PlateLevel coarse;
+    uint       begins; // as in ScalarsPush
+};
+
 struct VectorPush {
     uint nodes;     // of one load
     uint partials;  // sums that each dot product is split into

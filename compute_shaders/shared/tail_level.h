@@ -1,4 +1,4 @@
-// tail_level.h - the coarse levels that plate_tail.comp does in one dispatch (GLSL and C++).
+// tail_level.h - the coarse levels that plate_tail.comp and plate_nested.comp do in one dispatch (GLSL and C++).
 #ifndef PALPATE_TAIL_LEVEL_H
 #define PALPATE_TAIL_LEVEL_H
 
@@ -10,9 +10,12 @@ namespace palp::shared {
 
 // The sizes of the kernel's shared arrays and loops: levels of 64, 32 and 16 cells per side.
 const int kTailPool   = 8000;    // numbers in shared memory, 32 kB
+const int kTailSums   = 128;     // the same for sums, of which a workgroup has a multiple of invocations
 const int kTailNodes  = 65 * 65; // of a level
 const int kTailHalf   = 65 * 33; // nodes of one colour of a level, counted as columns times half rows rounded up
 const int kTailLevels = 8;
+
+const int kNestedSweeps = 1; // before and after each correction in nested iteration
 
 // Positions are those of the first number of this level in arrays that hold all levels of the tail.
 struct TailLevel {
@@ -28,6 +31,13 @@ struct TailPush {
     uint first;  // level to begin with; the last one is solved at once
     uint levels; // of the tail
     uint nodes;  // numbers of all of them together, what lies between them included
+};
+
+struct NestedPush {
+    uint first; // as in TailPush
+    uint levels;
+    uint nodes;
+    uint steps; // on the first level; one on the others
 };
 
 #ifdef __cplusplus

@@ -129,6 +129,7 @@ Handles open(const ContextSettings& settings)
     Handles opened = openAny(settings);
     lower(opened->limits.buffer, settings.most.buffer);
     lower(opened->limits.invocations, settings.most.invocations);
+    lower(opened->limits.buffers, settings.most.buffers);
     lower(opened->limits.sharedMemory, settings.most.sharedMemory);
     opened->description.float64 = opened->description.float64 && settings.float64;
     return opened;

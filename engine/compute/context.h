@@ -32,6 +32,7 @@ enum class Purpose {
 struct Limits {
     std::size_t   buffer       = 0; ///< [byte] one Buffer
     std::uint32_t invocations  = 0; ///< per workgroup
+    std::uint32_t buffers      = 0; ///< per kernel
     std::size_t   sharedMemory = 0; ///< [byte] per workgroup
 };
 

@@ -129,7 +129,7 @@ Processor describeHost()
 HostContext::HostContext()
 {
     description = describeHost();
-    limits      = {std::numeric_limits<std::ptrdiff_t>::max(), 1024, 0};
+    limits      = {std::numeric_limits<std::ptrdiff_t>::max(), 1024, std::numeric_limits<std::uint32_t>::max(), 0};
     bitExact    = true;
 }
 

@@ -95,6 +95,7 @@ void VulkanContext::describe(const Candidate& candidate, Purpose purpose)
     bitExact            = candidate.driver == VK_DRIVER_ID_MESA_LLVMPIPE;
     limits.buffer       = std::size_t(std::min<VkDeviceSize>(native.maxStorageBufferRange, candidate.maxBufferBytes));
     limits.invocations  = native.maxComputeWorkGroupInvocations;
+    limits.buffers      = native.maxPerStageDescriptorStorageBuffers;
     limits.sharedMemory = native.maxComputeSharedMemorySize;
     vkGetPhysicalDeviceMemoryProperties(physical, &memory);
 }

@@ -11,6 +11,7 @@ struct HostKernels {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::HostKernel name;
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::HostKernel name##_f32, name##_f64;
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"

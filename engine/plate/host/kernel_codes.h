@@ -45,6 +45,8 @@ namespace palp::kernels {
         else                                                                                                           \
             return PALPATE_CODE(spirv##_f32, nullptr, Push, buffers);                                                  \
     }
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)                                  \
+    PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
 #undef PALPATE_CODE
 

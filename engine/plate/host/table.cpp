@@ -13,6 +13,7 @@ namespace palp::PALPATE_ISA {
     void name##_f32(const compute::HostDispatch& d);                                                                   \
     void name##_f64(const compute::HostDispatch& d);
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
@@ -32,6 +33,7 @@ constexpr HostKernels kTable{
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
     .name##_f32 = &name##_f32, .name##_f64 = &name##_f64,
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"

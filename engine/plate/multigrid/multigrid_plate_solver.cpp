@@ -28,8 +28,8 @@
 //
 //   prepare   rigidity -> coarser rigidities -> divisors, tiles where it jumps -> factor of the coarsest level
 //   begin     loads -> coarser loads; coarsest answer; level by level upwards: interpolate, a step or two of conjugate
-//             gradients; then kStepsPerList steps on the finest level
-//   resume    kStepsPerList further steps
+//             gradients; then a few steps on the finest level, see kStepsOfLists
+//   resume    further steps
 //
 // The last two are recorded with, or without, extra sweeps of the tiles in which the rigidity jumps. The steps on the
 // finest level are dispatched indirectly: when the estimate is small enough, a kernel sets all their sizes to zero, and
@@ -46,7 +46,9 @@ using compute::Intent;
 using compute::Kernel;
 using Clock = std::chrono::steady_clock;
 
-constexpr int kStepsPerList = 4;
+/// Steps of a list: what a list has left when the solve is finished runs empty, which costs hardware a microsecond for each
+/// dispatch. The shortest one that holds the steps of the last solve is run; the answer is the same whichever it is.
+constexpr std::array kStepsOfLists{1, 2, 4};
 constexpr int kMostGroups   = 65535; ///< along x of a dispatch, on every processor
 
 constexpr double kRounding = 1e-7; ///< error of rigidities and answer in floats, twice 6e-8 rounded [1]
@@ -107,10 +109,11 @@ struct MultigridPlateSolver::Impl {
 
     /// The lists of a solve, recorded when they are first needed.
     struct Lists {
-        std::optional<CommandList> begin, resume;
+        std::array<std::optional<CommandList>, kStepsOfLists.size()> begin, resume; ///< by their steps
         int                        dispatchesPerCycle = 0;
-        int                        nestedDispatches = 0, stepDispatches = 0;
-        PlateWork                  nestedWork, stepsWork; ///< before the steps on the finest level; kStepsPerList steps
+        int                        nestedDispatches = 0, stepDispatches = 0, lastDispatches = 0;
+        PlateWork                  nestedWork, stepsWork; ///< before the steps on the finest level; the steps
+        int                        steps = 0; ///< of which stepsWork is
     };
     /// Memory for loads on few nodes: what the host writes and reads.
     struct FootprintBuffers {
@@ -130,6 +133,7 @@ struct MultigridPlateSolver::Impl {
     std::optional<CommandList> prepareList;
     std::array<Lists, 4>       lists;               ///< by how the rigidity jumps
     Jumps                      jumps = Jumps::none; ///< chooses among them
+    int                        lastSteps = kStepsOfLists.back(); ///< of the last solve
 
     Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
         : Impl(processor, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity)))
@@ -172,12 +176,15 @@ struct MultigridPlateSolver::Impl {
 
     // --- lists
 
-    void recordFinestSteps(CommandList& list, std::uint32_t begins)
+    void recordFinestSteps(CommandList& list, std::uint32_t begins, int steps)
     {
         PlatePasses::Recorder pass{passes, list, true};
         const int             before = list.dispatches();
-        passes.takeGradientSteps(pass, 0, kStepsPerList, k.smoothing.finest, begins, settings.tolerance);
-        lists[std::size_t(jumps)].stepDispatches = (list.dispatches() - before) / kStepsPerList;
+        passes.takeGradientSteps(pass, 0, steps, k.smoothing.finest, begins, settings.tolerance);
+        if (steps == kStepsOfLists.back()) {
+            lists[std::size_t(jumps)].stepDispatches = (list.dispatches() - before) / steps;
+            lists[std::size_t(jumps)].lastDispatches = (list.dispatches() - before) % steps;
+        }
         list.dispatch(k.result, {passes.levels[0].answer, units, result()},
                       shared::VectorPush{std::uint32_t(passes.nodes()), passes.partials(), 0},
                       passes.inOrder(k.result, 0));
@@ -201,7 +208,7 @@ struct MultigridPlateSolver::Impl {
         prepareList.emplace(std::move(list));
     }
 
-    CommandList recordBegin()
+    CommandList recordBegin(int steps)
     {
         Lists&                now = lists[std::size_t(jumps)];
         CommandList           list(context);
@@ -220,25 +227,35 @@ struct MultigridPlateSolver::Impl {
         }
         now.nestedWork       = std::exchange(passes.work, {});
         now.nestedDispatches = list.dispatches();
-        recordFinestSteps(list, 2);
+        recordFinestSteps(list, 2, steps);
         now.stepsWork          = passes.work;
+        now.steps              = steps;
         now.dispatchesPerCycle = passes.dispatchesPerCycle();
         return list;
     }
 
-    CommandList recordResume()
+    CommandList recordResume(int steps)
     {
         CommandList list(context);
         list.timestamp();
-        recordFinestSteps(list, 1);
+        recordFinestSteps(list, 1, steps);
         return list;
     }
 
-    /// Runs a list for the present jumps, recording it if necessary.
-    CommandList& run(std::optional<CommandList> Lists::*which, CommandList (Impl::*record)())
+    /// Returns which list holds so many steps. In software none runs empty: there it is always the longest.
+    [[nodiscard]] std::size_t listFor(int steps) const
     {
-        auto& list = lists[std::size_t(jumps)].*which;
-        if (!list) list.emplace((this->*record)());
+        std::size_t which = 0;
+        while (which + 1 < kStepsOfLists.size() && (!k.fused || kStepsOfLists[which] < steps)) ++which;
+        return which;
+    }
+
+    /// Runs a list for the present jumps that holds so many steps, recording it if necessary.
+    CommandList& run(decltype(Lists::begin) Lists::*which, CommandList (Impl::*record)(int), int steps)
+    {
+        const std::size_t at   = listFor(steps);
+        auto&             list = (lists[std::size_t(jumps)].*which)[at];
+        if (!list) list.emplace((this->*record)(kStepsOfLists[at]));
         context.run(*list);
         hostState.makeVisibleToHost();
         return *list;
@@ -429,7 +446,8 @@ struct MultigridPlateSolver::Impl {
     /// Takes steps for the loads that were uploaded, until the estimate is small enough.
     [[nodiscard]] SolveReport iterate(Clock::time_point began)
     {
-        CommandList*          list                  = &run(&Lists::begin, &Impl::recordBegin);
+        constexpr int         kBeyond = 2; // steps that are tried where it takes more than the last solve did
+        CommandList*          list    = &run(&Lists::begin, &Impl::recordBegin, lastSteps);
         int                   done                  = int(worst(shared::kStateSteps));
         std::optional<double> processorMilliseconds = 0;
         for (;;) {
@@ -440,9 +458,10 @@ struct MultigridPlateSolver::Impl {
             if (std::isnan(estimate))
                 throw SolverBrokeDown("plate: the solver broke down; the rigidity or the load is out of range");
             if (!(estimate > settings.tolerance) || done >= settings.maxIterations) break;
-            list = &run(&Lists::resume, &Impl::recordResume);
+            list = &run(&Lists::resume, &Impl::recordResume, done < lastSteps ? lastSteps - done : kBeyond);
             done += int(worst(shared::kStateSteps));
         }
+        lastSteps = done;
         SolveReport report;
         report.solver        = context.processor().name;
         report.iterations    = done;
@@ -450,7 +469,7 @@ struct MultigridPlateSolver::Impl {
         report.converged     = worst(shared::kStateEstimate) <= settings.tolerance && rounding <= settings.tolerance &&
                            !passes.isTooSoft();
         const Lists& used = lists[std::size_t(jumps)];
-        report.workUnits  = passes.workUnits(used.nestedWork) + done * passes.workUnits(used.stepsWork) / kStepsPerList;
+        report.workUnits  = passes.workUnits(used.nestedWork) + done * passes.workUnits(used.stepsWork) / used.steps;
         report.processorMilliseconds = processorMilliseconds;
         report.milliseconds          = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
         return report;
@@ -535,9 +554,9 @@ double MultigridPlateSolver::rounding() const noexcept
 MultigridPlateSolver::CommandCounts MultigridPlateSolver::commands()
 {
     Impl::Lists& now = impl_->lists[std::size_t(impl_->jumps)];
-    if (!now.begin) now.begin.emplace(impl_->recordBegin());
+    if (!now.begin.back()) now.begin.back().emplace(impl_->recordBegin(kStepsOfLists.back()));
     return {impl_->prepareList->dispatches(), impl_->prepareList->copies(), now.nestedDispatches, now.stepDispatches,
-            now.dispatchesPerCycle};
+            now.dispatchesPerCycle, now.lastDispatches};
 }
 
 int MultigridPlateSolver::dispatchesPerCycle() const noexcept

@@ -154,6 +154,7 @@ public:
         int nested = 0;                     ///< dispatches before the steps on the finest level
         int step   = 0;                     ///< dispatches of a step of conjugate gradients there, its cycle included
         int cycle  = 0;
+        int last   = 0; ///< dispatches after the steps of a list: where they are fused, what the last one leaves to do
     };
     /// Counts the commands for rigidities that jump as the present one does.
     [[nodiscard]] CommandCounts commands();

@@ -23,7 +23,7 @@ BenchRow rowOf(const MultigridPlateSolver::CommandCounts& counts, Schedule sched
     row.commands = counts;
     row.note = row.schedule + ": new map " + text(counts.prepare) + " dispatches and " + text(counts.prepareCopies) +
                " copies, nested iteration " + text(counts.nested) + " dispatches, a step " + text(counts.step) +
-               ", of which the cycle " + text(counts.cycle);
+               ", of which the cycle " + text(counts.cycle) + ", after the steps of a list " + text(counts.last);
     return row;
 }
 

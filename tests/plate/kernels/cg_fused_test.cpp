@@ -130,6 +130,40 @@ TEST_F(CgFusedTest, ProbingIsDirectionForcesAndAStepOfTheirProduct)
     });
 }
 
+TEST_F(CgFusedTest, FinishingIsTheUpdateOfTheLastStepWhereverItsNumbersAre)
+{
+    constexpr std::uint32_t kNodes = 997;
+    inEachPrecision([](auto number) {
+        using Real = decltype(number);
+        const compute::Kernel   finish(context(), kernels::finish<Real>(), {64, 1, 1});
+        const std::size_t       count = std::size_t(kLoads) * kNodes;
+        const std::vector<Real> p[2] = {roughValues<Real>(count, 51), roughValues<Real>(count, 52)},
+                                q = roughValues<Real>(count, 53);
+        for (const int steps : {1, 2, 3, 4}) {
+            SCOPED_TRACE(std::to_string(steps) + " steps");
+            const bool        odd = steps % 2 == 1;
+            std::vector<Real> state = roughState<Real>(54), x = roughValues<Real>(count, 55),
+                              r = roughValues<Real>(count, 56);
+            const std::vector<Real> other = roughValues<Real>(count, 57);
+            for (int load = 0; load < kLoads; ++load) state[std::size_t(load * kStateWords + kStateSteps)] = Real(steps);
+            std::vector<Real> wantedX = x, wantedR = odd ? r : other;
+            for (std::size_t n = 0; n < count; ++n) {
+                const Real alpha = state[n / kNodes * kStateWords + std::size_t(kStateAlpha)];
+                wantedX[n] += alpha * p[odd ? 1 : 0][n];
+                wantedR[n] -= alpha * q[n];
+            }
+            std::vector<float> rounded(count), wantedRounded(wantedR.begin(), wantedR.end());
+            std::vector<Real>  first = p[0];
+            dispatchOnce(finish, {in(state), inOut(first), in(p[1]), in(q), inOut(x), inOut(r), in(other), out(rounded)},
+                         VectorPush{kNodes, 0, 0}, finish.groupsOver(kNodes, 1, kLoads));
+            EXPECT_EQ(first, p[odd ? 1 : 0]) << "the direction after which the next list begins";
+            EXPECT_TRUE(agree(x, wantedX, ownSizes(wantedX), kFusedRounding));
+            EXPECT_TRUE(agree(r, wantedR, ownSizes(wantedR), kFusedRounding));
+            EXPECT_TRUE(agree(rounded, wantedRounded, ownSizes(wantedRounded), kFusedRounding));
+        }
+    });
+}
+
 /// One load of three that is not finished keeps the dispatches of all.
 TEST_F(CgFusedTest, DispatchesGoOnWhileALoadIsNotFinished)
 {

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 
+#include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/region_layout.h"
 #include "engine/plate/multigrid/detail/plate_tail.h"
@@ -75,6 +77,46 @@ struct Levels {
         const auto      below = cycle(l + 1, host::restricted(both, left), inverse, sweeps);
         return swept(level, sum(w, host::interpolated(both, below)), force, 1, sweeps);
     }
+
+    /// Nested iteration for one load of a level, pass by pass, to its answer after so many steps.
+    /// \param lanes  of the workgroup, which add a dot product
+    [[nodiscard]] std::vector<float> nested(std::size_t top, const std::vector<float>& load,
+                                            const std::vector<shared::FloatPair>& inverse, int steps,
+                                            std::size_t lanes) const
+    {
+        if (top + 1 == levels.size()) return cycle(top, load, inverse, shared::kNestedSweeps);
+        const RoughLevel&  level = levels[top];
+        std::vector<float> x =
+            host::interpolated(pair(top), nested(top + 1, host::restricted(pair(top), load), inverse, 1, lanes));
+        std::vector<float> r = host::residual(level.g, level.rigidity, load, x), p(x.size(), 0.0F);
+        float              lastRz = 0;
+        for (int step = 0; step < steps; ++step) {
+            const auto  z    = cycle(top, r, inverse, shared::kNestedSweeps);
+            const float rz   = dotOf(r, z, lanes);
+            const float beta = step == 0 ? 0 : rz / lastRz;
+            for (std::size_t n = 0; n < z.size(); ++n) p[n] = z[n] + beta * p[n];
+            const auto  q     = host::applied(level.g, level.rigidity, p);
+            const float alpha = rz / dotOf(p, q, lanes);
+            for (std::size_t n = 0; n < z.size(); ++n) {
+                x[n] += alpha * p[n];
+                r[n] -= alpha * q[n];
+            }
+            lastRz = rz;
+        }
+        return x;
+    }
+
+private:
+    /// In the order of plate_nested.comp: each lane adds its nodes, then lanes are added by kTailSums, then by halves.
+    static float dotOf(const std::vector<float>& a, const std::vector<float>& b, std::size_t lanes)
+    {
+        std::vector<float> sums(lanes, 0.0F);
+        for (std::size_t n = 0; n < a.size(); ++n) sums[n % lanes] += a[n] * b[n];
+        for (std::size_t n = shared::kTailSums; n < lanes; ++n) sums[n % shared::kTailSums] += sums[n];
+        for (std::size_t reach = shared::kTailSums / 2; reach > 0; reach /= 2)
+            for (std::size_t n = 0; n < reach; ++n) sums[n] += sums[n + reach];
+        return sums[0];
+    }
 };
 
 /// Numbers with 48 digits.
@@ -85,6 +127,8 @@ std::vector<shared::FloatPair> roughPairs(std::size_t count, unsigned seed)
     for (std::size_t n = 0; n < count; ++n) pairs.push_back({high[n], high[n] * low[n] * 1e-8F});
     return pairs;
 }
+
+constexpr int kFinestSweeps = 2; ///< before and after each correction on the finest level
 
 class FusedCycleTest : public PlateShaderTest {
 protected:
@@ -120,9 +164,10 @@ protected:
         return {1, 2};
     }
 
-    static compute::Groups regionsOf(const shared::PlateLevel& g, int sweeps)
+    /// \param beyond  nodes on which the result is needed too, on either side of those that a workgroup owns
+    static compute::Groups regionsOf(const shared::PlateLevel& g, int sweeps, int beyond)
     {
-        const int owned = shared::kRegion - 2 * sweeps * shared::kRimPerSweep;
+        const int owned = shared::kRegion - 2 * (sweeps * shared::kRimPerSweep + beyond);
         return {std::uint32_t(g.cellsZ / owned + 1), std::uint32_t(g.cellsX / owned + 1), kLoads};
     }
 
@@ -139,27 +184,140 @@ protected:
     }
 };
 
-TEST_F(FusedCycleTest, TheWayDownIsSweepsFromZeroAndTheResidual)
+/// Half as many cells along each side, and a few more.
+std::vector<LevelPair> pairsBelow(const Plate& plate)
+{
+    const int x = plate.grid.cellsX, z = plate.grid.cellsZ;
+    return {LevelPair(plate, std::max(3, (x + 1) / 2), std::max(3, (z + 1) / 2)),
+            LevelPair(plate, (x + 1) / 2 + 1, std::max(3, z - 1))};
+}
+
+/// What a sum of residuals is relative to, at each coarse node.
+std::vector<double> gatheredSizes(const std::vector<double>& sizes, std::size_t count)
+{
+    constexpr double kWeights = 4; // about: of the absolute weights along both axes [1]
+    return std::vector<double>(count, kWeights * *std::ranges::max_element(sizes));
+}
+
+TEST_F(FusedCycleTest, TheWayDownIsSweepsFromZeroAndTheForcesBelow)
 {
     if (onHost()) GTEST_SKIP() << "the host has no such kernel";
     for (const compute::Workgroup shape : shapes())
         for (const int sweeps : sweepCounts()) {
             const compute::Kernel down = kernelOf(kernels::down(), shape, sweeps);
-            for (const Plate& plate : regionPlates()) {
-                SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", sweeps: " + std::to_string(sweeps));
-                const RoughLevel   level(plate);
-                const auto         force = roughValues<float>(kLoads * nodesOf(level.g), 31);
-                const auto         w     = swept(level, std::vector<float>(force.size(), 0.0F), force, 0, sweeps);
-                const auto         left  = host::residual(level.g, level.rigidity, force, w);
-                std::vector<float> measuredW(w.size()), measuredLeft(w.size());
-                dispatchTwice(down,
-                              {in(level.rigidity), in(host::inverseDivisor(level.g, level.rigidity)), in(force),
-                               out(measuredW), out(measuredLeft)},
-                              shared::LevelPush{level.g}, regionsOf(level.g, sweeps));
-                EXPECT_TRUE(agree(measuredW, w, sizesOf(w), kCycleRounding));
-                EXPECT_TRUE(agree(measuredLeft, left, operatorSizes(level, w), kCycleRounding));
-            }
+            for (const Plate& plate : regionPlates())
+                for (const LevelPair& pair : pairsBelow(plate)) {
+                    SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", sweeps: " + std::to_string(sweeps));
+                    const RoughLevel   level(plate);
+                    const auto         force = roughValues<float>(kLoads * nodesOf(level.g), 31);
+                    const auto         w     = swept(level, std::vector<float>(force.size(), 0.0F), force, 0, sweeps);
+                    const auto         left  = host::residual(level.g, level.rigidity, force, w);
+                    const auto         below = host::restricted(pair, left);
+                    std::vector<float> measuredW(w.size()), measuredBelow(below.size());
+                    dispatchTwice(down,
+                                  {in(level.rigidity), in(host::inverseDivisor(level.g, level.rigidity)),
+                                   in(pair.tableX), in(pair.tableZ), out(measuredW), out(measuredBelow), in(force)},
+                                  shared::TransferPush{level.g, pair.coarse},
+                                  regionsOf(level.g, sweeps, shared::kGathered));
+                    EXPECT_TRUE(agree(measuredW, w, sizesOf(w), kCycleRounding));
+                    EXPECT_TRUE(agree(measuredBelow, below, gatheredSizes(operatorSizes(level, w), below.size()),
+                                      kCycleRounding));
+                }
         }
+}
+
+TEST_F(FusedCycleTest, TheWayDownTakesTheLastStepFirst)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernel";
+    if (isSlow()) GTEST_SKIP() << "time";
+    inEachPrecision([](auto number) {
+        using Real = decltype(number);
+        const compute::Kernel down = kernelOf(kernels::downUpdating<Real>(), {256, 1, 1}, kFinestSweeps);
+        for (const Plate& plate : regionPlates()) {
+            SCOPED_TRACE(describe(plate));
+            const RoughLevel        level(plate);
+            const LevelPair         pair = pairsBelow(plate).front();
+            const std::size_t       nodes = nodesOf(level.g), count = kLoads * nodes;
+            const std::vector<Real> p = roughValues<Real>(count, 91), q = roughValues<Real>(count, 92),
+                                    r = roughValues<Real>(count, 93), state = roughValues<Real>(
+                                        kLoads * std::size_t(shared::kStateWords), 94);
+            std::vector<Real>  x = roughValues<Real>(count, 95), newX = x, rest = r;
+            std::vector<float> force(count);
+            for (std::size_t n = 0; n < count; ++n) {
+                const Real alpha = state[n / nodes * shared::kStateWords + std::size_t(shared::kStateAlpha)];
+                newX[n] += alpha * p[n];
+                rest[n] -= alpha * q[n];
+                force[n] = float(rest[n]);
+            }
+            const auto w     = swept(level, std::vector<float>(count, 0.0F), force, 0, kFinestSweeps);
+            const auto below = host::restricted(pair, host::residual(level.g, level.rigidity, force, w));
+            std::vector<float> measuredW(count), measuredForce(count), measuredBelow(below.size());
+            std::vector<Real>  measuredRest(count);
+            dispatchOnce(down,
+                         {in(level.rigidity), in(host::inverseDivisor(level.g, level.rigidity)), in(pair.tableX),
+                          in(pair.tableZ), out(measuredW), out(measuredBelow), out(measuredForce), in(state), in(p),
+                          in(q), in(r), out(measuredRest), inOut(x)},
+                         shared::TransferPush{level.g, pair.coarse}, regionsOf(level.g, kFinestSweeps, shared::kGathered));
+            EXPECT_TRUE(agree(x, newX, std::vector<double>(count, 1), kFusedRounding));
+            EXPECT_TRUE(agree(measuredRest, rest, std::vector<double>(count, 1), kFusedRounding));
+            EXPECT_TRUE(agree(measuredForce, force, std::vector<double>(count, 1), kFusedRounding));
+            EXPECT_TRUE(agree(measuredW, w, sizesOf(w), kCycleRounding));
+            EXPECT_TRUE(agree(measuredBelow, below, gatheredSizes(operatorSizes(level, w), below.size()),
+                              kCycleRounding));
+        }
+    });
+}
+
+TEST_F(FusedCycleTest, TheWayUpAims)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernel";
+    if (isSlow()) GTEST_SKIP() << "time";
+    inEachPrecision([](auto number) {
+        using Real = decltype(number);
+        const compute::Kernel up = kernelOf(kernels::upAiming<Real>(), {256, 1, 1}, kFinestSweeps);
+        for (const Plate& plate : regionPlates())
+            for (const std::uint32_t begins : {0U, 2U}) {
+                SCOPED_TRACE(describe(plate));
+                const RoughLevel  level(plate);
+                const LevelPair   pair = pairsBelow(plate).front();
+                const std::size_t nodes = nodesOf(level.g), count = kLoads * nodes;
+                const auto        force = roughValues<float>(count, 32), f = roughValues<float>(count, 96);
+                const auto        before = roughDeflection<float>(level.g, kLoads, 33);
+                const auto        coarse = roughValues<float>(kLoads * nodesOf(pair.coarse), 34);
+                const auto        r = roughValues<Real>(count, 97), x = roughValues<Real>(count, 98);
+                const auto        z = swept(level, sum(before, host::interpolated(pair, coarse)), force, 1, kFinestSweeps);
+                std::vector<Real> state = roughValues<Real>(kLoads * std::size_t(shared::kStateWords), 99);
+                for (Real& word : state) word = Real(0.5) + std::abs(word);
+                const compute::Groups groups = regionsOf(level.g, kFinestSweeps, 0);
+                constexpr int         kOwned = shared::kRegion - 2 * kFinestSweeps * shared::kRimPerSweep;
+                std::vector<Real>     expected = state, sums; // as host::beta() takes them: of (r, z), then of (f, x)
+                for (std::size_t load = 0; load < kLoads; ++load)
+                    for (const bool ofLoad : {false, true})
+                        for (std::uint32_t group = 0; group < groups.x * groups.y; ++group) {
+                            std::vector<Real> lanes(256);
+                            for (int n = 0; n < kOwned * kOwned; ++n) {
+                                const int i = int(group / groups.x) * kOwned + n / kOwned;
+                                const int j = int(group % groups.x) * kOwned + n % kOwned;
+                                if (i > level.g.cellsX || j > level.g.cellsZ) continue;
+                                const std::size_t at = load * nodes + std::size_t(i * (level.g.cellsZ + 1) + j);
+                                lanes[std::size_t(n % 256)] += ofLoad ? Real(f[at]) * x[at] : r[at] * Real(z[at]);
+                            }
+                            sums.push_back(host::total(lanes.data(), 256, 256));
+                        }
+                host::beta({kLoads, groups.x * groups.y, begins, 0, 0}, sums, 256, expected);
+                std::vector<Real>          partials(2 * std::size_t(kLoads) * groups.x * groups.y);
+                std::vector<std::uint32_t> tickets(kLoads + 2, 0);
+                std::vector<float>         measured(count);
+                dispatchOnce(up,
+                             {in(level.rigidity), in(host::inverseDivisor(level.g, level.rigidity)), in(pair.tableX),
+                              in(pair.tableZ), in(force), in(coarse), in(before), out(measured), in(r), in(x), in(f),
+                              out(partials), inOut(tickets), inOut(state)},
+                             shared::UpPush{level.g, pair.coarse, begins}, groups);
+                EXPECT_TRUE(agree(measured, z, sizesOf(z), kCycleRounding));
+                EXPECT_TRUE(agree(state, expected, std::vector<double>(state.size(), double(nodes)), kCycleRounding));
+                EXPECT_EQ(tickets, std::vector<std::uint32_t>(kLoads + 2, 0)) << "ready for the next dispatch";
+            }
+    });
 }
 
 TEST_F(FusedCycleTest, TheWayUpIsTheCorrectionAndSweeps)
@@ -178,9 +336,9 @@ TEST_F(FusedCycleTest, TheWayUpIsTheCorrectionAndSweeps)
                 const auto         w = swept(level, sum(before, host::interpolated(pair, coarse)), force, 1, sweeps);
                 std::vector<float> measured(w.size());
                 dispatchTwice(up,
-                              {in(level.rigidity), in(host::inverseDivisor(level.g, level.rigidity)), in(force),
-                               in(pair.tableX), in(pair.tableZ), in(coarse), in(before), out(measured)},
-                              shared::TransferPush{level.g, pair.coarse}, regionsOf(level.g, sweeps));
+                              {in(level.rigidity), in(host::inverseDivisor(level.g, level.rigidity)), in(pair.tableX),
+                               in(pair.tableZ), in(force), in(coarse), in(before), out(measured)},
+                              shared::TransferPush{level.g, pair.coarse}, regionsOf(level.g, sweeps, 0));
                 EXPECT_TRUE(agree(measured, w, sizesOf(w), kCycleRounding));
             }
         }
@@ -227,6 +385,56 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
                 }
             }
         }
+}
+
+TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernel";
+    if (isSlow()) GTEST_SKIP() << "with every access checked this kernel takes minutes to compile";
+    if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
+    using enum Edge;
+    for (const compute::Workgroup shape : shapesOfTail()) {
+        const compute::Kernel kernel(context(), kernels::nested(), shape);
+        for (const Plate& plate : {onRoughBed(roughPlate(40, 26, {clamped, free, supported, clamped})), // two levels
+                                   roughPlate(64, 64, {clamped, clamped, clamped, clamped}),            // three
+                                   roughPlate(64, 33, {supported, supported, free, clamped}, 1, 1.9)}) {
+            const Levels     levels(plate);
+            const TailLayout tail = tailLayout(levels.grids);
+            ASSERT_EQ(tail.first, 0u);
+            std::vector<float> rigidity(tail.nodes, -1.0F), divisor(tail.nodes, -1.0F); // -1 between the levels
+            for (std::size_t l = 0; l < levels.levels.size(); ++l) {
+                const RoughLevel& level = levels.levels[l];
+                std::ranges::copy(level.rigidity, rigidity.begin() + tail.levels[l].field);
+                std::ranges::copy(host::inverseDivisor(level.g, level.rigidity), divisor.begin() + tail.levels[l].field);
+            }
+            const std::size_t              coarsest = nodesOf(levels.levels.back().g);
+            std::vector<shared::FloatPair> inverse  = roughPairs(coarsest * coarsest, 35);
+            for (std::size_t n = 0; n < inverse.size(); ++n)
+                inverse[n] = n % (coarsest + 1) == 0 ? shared::FloatPair{1, 0} : shared::FloatPair{inverse[n].high / 64, 0};
+            for (std::size_t top = 0; top < levels.levels.size(); ++top)
+                for (const int steps : {1, 2}) {
+                    SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", from level " + std::to_string(top) +
+                                 ", steps: " + std::to_string(steps));
+                    const std::size_t  nodes = nodesOf(levels.levels[top].g);
+                    const auto         load  = roughValues<float>(kLoads * nodes, 37);
+                    std::vector<float> expected;
+                    for (auto from = load.begin(); from != load.end(); from += std::ptrdiff_t(nodes)) {
+                        const auto one = levels.nested(top, {from, from + std::ptrdiff_t(nodes)}, inverse, steps, shape.x);
+                        expected.insert(expected.end(), one.begin(), one.end());
+                    }
+                    std::vector<float> measured(expected.size());
+                    std::vector<std::vector<float>> fields(5, std::vector<float>(kLoads * tail.nodes, 0.0F));
+                    dispatchTwice(kernel,
+                                  {in(tail.levels), in(rigidity), in(divisor), in(tail.tablesX), in(tail.tablesZ),
+                                   in(inverse), in(load), inOut(fields[0]), out(measured), inOut(fields[1]),
+                                   inOut(fields[2]), inOut(fields[3]), inOut(fields[4])},
+                                  shared::NestedPush{std::uint32_t(top), std::uint32_t(tail.levels.size()), tail.nodes,
+                                                     std::uint32_t(steps)},
+                                  {1, 1, kLoads});
+                    EXPECT_TRUE(agree(measured, expected, sizesOf(expected), kCycleRounding));
+                }
+        }
+    }
 }
 
 TEST(TailLayout, TakesTheLevelsOfUpTo64CellsAndFitsTheKernel)

@@ -8,6 +8,7 @@
 #include "compute_shaders/shared/tail_level.h"
 #include "tests/plate/kernels/push_echo_aim.spv.h"
 #include "tests/plate/kernels/push_echo_level.spv.h"
+#include "tests/plate/kernels/push_echo_nested.spv.h"
 #include "tests/plate/kernels/push_echo_probe.spv.h"
 #include "tests/plate/kernels/push_echo_relax.spv.h"
 #include "tests/plate/kernels/push_echo_rigidity.spv.h"
@@ -15,6 +16,7 @@
 #include "tests/plate/kernels/push_echo_smooth.spv.h"
 #include "tests/plate/kernels/push_echo_tail.spv.h"
 #include "tests/plate/kernels/push_echo_transfer.spv.h"
+#include "tests/plate/kernels/push_echo_up.spv.h"
 #include "tests/plate/kernels/push_echo_vector.spv.h"
 #include "tests/support/shader_fixture.h"
 
@@ -29,6 +31,8 @@ static_assert(sizeof(LevelPush) == 48 && sizeof(LevelPush) <= kMostPushBytes);
 static_assert(sizeof(RelaxPush) == 52 && sizeof(RelaxPush) <= kMostPushBytes);
 static_assert(sizeof(SmoothPush) == 56 && sizeof(SmoothPush) <= kMostPushBytes);
 static_assert(sizeof(TransferPush) == 96 && sizeof(TransferPush) <= kMostPushBytes);
+static_assert(sizeof(UpPush) == 100 && sizeof(UpPush) <= kMostPushBytes);
+static_assert(sizeof(NestedPush) == 16 && sizeof(NestedPush) <= kMostPushBytes);
 static_assert(sizeof(VectorPush) == 12 && sizeof(VectorPush) <= kMostPushBytes);
 static_assert(sizeof(AimPush) == 8 && sizeof(AimPush) <= kMostPushBytes);
 static_assert(sizeof(ProbePush) == 60 && sizeof(ProbePush) <= kMostPushBytes);
@@ -80,8 +84,12 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
     const VectorPush   vector{1000U, 64U, 7U};
     const ScalarsPush  scalars{3U, 64U, 2U, 768U, 1e-6F};
 
+    const UpPush    up{kFine, kCoarse, 2U};
     const AimPush   aim{1000U, 2U};
     const ProbePush probe{kFine, 3U, 768U, 1e-6F};
+    EXPECT_EQ(echoed(push_echo_up_spv, up), Words(up.fine, up.coarse, up.begins));
+    const NestedPush nested{1U, 3U, 5603U, 2U};
+    EXPECT_EQ(echoed(push_echo_nested_spv, nested), Words(nested.first, nested.levels, nested.nodes, nested.steps));
     EXPECT_EQ(echoed(push_echo_aim_spv, aim), Words(aim.nodes, aim.begins));
     EXPECT_EQ(echoed(push_echo_probe_spv, probe),
               Words(probe.level, probe.loads, probe.argumentWords, probe.tolerance));

@@ -21,12 +21,16 @@ layout(push_constant) uniform Constants { RelaxPush push; };
 layout(push_constant) uniform Constants { SmoothPush push; };
 #elif defined(ECHO_TRANSFER)
 layout(push_constant) uniform Constants { TransferPush push; };
+#elif defined(ECHO_UP)
+layout(push_constant) uniform Constants { UpPush push; };
 #elif defined(ECHO_VECTOR)
 layout(push_constant) uniform Constants { VectorPush push; };
 #elif defined(ECHO_AIM)
 layout(push_constant) uniform Constants { AimPush push; };
 #elif defined(ECHO_PROBE)
 layout(push_constant) uniform Constants { ProbePush push; };
+#elif defined(ECHO_NESTED)
+layout(push_constant) uniform Constants { NestedPush push; };
 #elif defined(ECHO_TAIL)
 layout(push_constant) uniform Constants { TailPush push; };
 layout(std430, binding = 1) readonly buffer Levels { TailLevel levels[]; };
@@ -73,6 +77,10 @@ void main()
 #elif defined(ECHO_TRANSFER)
     echo(push.fine);
     echo(push.coarse);
+#elif defined(ECHO_UP)
+    echo(push.fine);
+    echo(push.coarse);
+    echo(push.begins);
 #elif defined(ECHO_RIGIDITY)
     echo(push.levels);
     echo(push.rows);
@@ -93,6 +101,11 @@ void main()
     echo(push.loads);
     echo(push.argumentWords);
     echo(push.tolerance);
+#elif defined(ECHO_NESTED)
+    echo(push.first);
+    echo(push.levels);
+    echo(push.nodes);
+    echo(push.steps);
 #elif defined(ECHO_TAIL)
     echo(push.first);
     echo(push.levels);

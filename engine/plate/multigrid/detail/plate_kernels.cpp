@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "compute_shaders/shared/tail_level.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/compute/context.h"
 #include "engine/core/contract.h"
@@ -52,7 +53,7 @@ Smoother chosen(Smoother smoother, Schedule schedule, const compute::Context& co
 Smoothing smoothingBy(Smoother smoother)
 {
     if (smoother == Smoother::exactRims) smoother = Smoother::chebyshev;
-    return smoother == Smoother::redBlack ? Smoothing{smoother, 1, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
+    return smoother == Smoother::redBlack ? Smoothing{smoother, shared::kNestedSweeps, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
 }
 
 /// Chooses the schedule. Fused passes compute the rims of regions several times, which pays where waiting for a
@@ -62,8 +63,10 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
     PALP_EXPECT(smoother == Smoother::redBlack || schedule != Schedule::fused, "fused passes smooth in red and black");
     if (schedule == Schedule::fused && context.processor().kind == compute::ProcessorKind::host)
         throw Error("the host has no fused passes: they spare dispatches, of which it has none");
-    const bool fits = context.limits().sharedMemory >= sizeof(float) * shared::kTailPool &&
-                      context.limits().invocations >= Shapes{}.region.x;
+    constexpr std::uint32_t kBuffers = 14; // of the kernel that takes most
+    const compute::Limits   limits   = context.limits();
+    const bool fits = limits.sharedMemory >= sizeof(float) * (shared::kTailPool + shared::kTailSums) && limits.buffers >= kBuffers &&
+                      limits.invocations >= Shapes{}.region.x;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
     return schedule == Schedule::fused ||
            (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
@@ -90,6 +93,8 @@ PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& s
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)                                               \
     .name = bySweeps(kernels::name(), shapes.shape),
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)                                  \
+    .name = bySweeps(doubles ? kernels::name<double>() : kernels::name<float>(), shapes.shape),
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)                                        \
     .name = compute::Kernel(context, kernels::name(), shapes.shape),
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)                                         \
@@ -120,6 +125,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)                                               \
     .name = compute::Kernel(context, f64 ? kernels::name<double>(host) : kernels::name<float>(host), shapes.shape),
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"

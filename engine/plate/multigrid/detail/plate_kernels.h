@@ -25,6 +25,8 @@ struct PlateKernels::All {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape) std::array<compute::Kernel, 2> name;
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)                                  \
+    PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #include "compute_shaders/shared/plate_kernels.def"
@@ -43,6 +45,7 @@ struct PlateKernels::All {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
+#define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"

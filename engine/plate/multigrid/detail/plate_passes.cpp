@@ -22,8 +22,13 @@ using compute::Groups;
 using compute::Intent;
 using compute::Kernel;
 
-constexpr int           kNestedSteps = 1; ///< on each coarser level of the nested iteration but the last
-constexpr int           kLastSteps = 2; ///< on that one: two on coarser levels change the answer by less than its error
+/// Returns the steps on a coarser level of the nested iteration: two on more than the last one change the answer by less
+/// than its error.
+constexpr int stepsOf(std::size_t level)
+{
+    return level == 1 ? 2 : 1;
+}
+
 constexpr std::uint32_t kMostPartials = 16384; ///< sums that a dot product is split into
 constexpr std::uint32_t kTermsPerSum  = 64;    ///< least terms of a sum, unless there are too few partials
 
@@ -43,6 +48,17 @@ template <class T>
 std::span<T> viewOf(const Binding& part)
 {
     return part.buffer->as<T>().subspan(part.offset / sizeof(T), part.bytes / sizeof(T));
+}
+
+/// Nodes along each side of the regions of plate_down.comp and plate_up.comp that others own.
+int rimOfDown(int sweeps)
+{
+    return shared::kRimPerSweep * sweeps + shared::kGathered;
+}
+
+int rimOfUp(int sweeps)
+{
+    return shared::kRimPerSweep * sweeps;
 }
 
 std::uint32_t partialsFor(std::size_t nodes)
@@ -74,8 +90,9 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
         setGroups(tileArgument(l), {0, 1, loads_}); // enableSteps() copies the number of tiles here
     if (k.fused) {
         tail_.emplace(context, kernels, grids_, loads);
-        const Groups      nodes = everyNode(k.fused->probe, 0);
-        const std::size_t most  = std::max<std::size_t>(2 * sharedByGroups(0).x, std::size_t(nodes.x) * nodes.y);
+        const auto count = [](const Groups& groups) { return std::size_t(groups.x) * groups.y; };
+        const std::size_t most = std::max({2 * count(sharedByGroups(0)), 2 * count(regionsOf(0, rimOfUp(2))),
+                                           count(everyNode(k.fused->probe, 0))});
         groupSums_.emplace(reals("sums of workgroups", most * loads_));
         tickets_.emplace(context, "tickets", 4 * (std::size_t(loads_) + 2), Intent::processor);
         layoutLevels_.emplace(context, "levels of rigidities", sizeof(shared::RigidityLevel) * levels.size(),
@@ -114,7 +131,8 @@ std::vector<Buffer> PlatePasses::makeGradients() const
 {
     std::vector<Buffer> made;
     for (const char* name : {"answer", "left", "direction", "forces"}) made.push_back(reals(name, fieldSize(0)));
-    if (k.fused) made.push_back(reals("other direction", fieldSize(0)));
+    if (k.fused)
+        for (const char* name : {"other direction", "other left"}) made.push_back(reals(name, fieldSize(0)));
     return made;
 }
 
@@ -142,7 +160,8 @@ std::vector<LevelBuffers> PlatePasses::makeLevels() const
                         gradients_[1 - l % 2],
                         gradients_[2],
                         gradients_[3],
-                        gradients_.back()});
+                        gradients_[k.fused ? 4 : 2],
+                        gradients_[k.fused ? 5 : 1]});
     }
     return made;
 }
@@ -328,7 +347,7 @@ int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps, bool rimIsS
     if (isFused()) return runFusedCycle(pass, l, sweeps);
     const LevelBuffers& b = levels[l];
     if (l + 1 == levels.size()) {
-        solveCoarsest(pass, b.force);
+        pass(k.coarseSolve, {factor_, b.force, b.w[0]}, shared::LevelPush{level(l)}, {1, 1, loads_});
         return 0;
     }
     int                        at    = smoothFirst(pass, l, sweeps, rimIsSolved);
@@ -347,6 +366,33 @@ int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps, bool rimIsS
     return at;
 }
 
+// Returns a workgroup for each region of level l, see plate_region.glsl.
+Groups PlatePasses::regionsOf(std::size_t l, int rim) const
+{
+    const auto owned = std::uint32_t(shared::kRegion - 2 * rim);
+    return {std::uint32_t(level(l).cellsZ) / owned + 1, std::uint32_t(level(l).cellsX) / owned + 1, loads_};
+}
+
+// Goes down from level l. From the second step of conjugate gradients on it takes the last step on its way.
+void PlatePasses::goDown(Recorder& pass, std::size_t l, int sweeps, int step)
+{
+    const LevelBuffers&        b = levels[l];
+    const Buffer&              below  = levels[l + 1].force;
+    const auto                 kernel = std::size_t(sweeps - 1);
+    const shared::TransferPush transfer{level(l), level(l + 1)};
+    const Groups               groups = regionsOf(l, rimOfDown(sweeps));
+    countWork(l, sweeps);
+    if (step == 1)
+        return pass(k.fused->down[kernel], {b.rigidity, b.divisor, b.tableX, b.tableZ, b.w[0], below, b.force},
+                    transfer, groups);
+    const bool odd = step % 2 == 1;
+    pass(k.fused->downUpdating[kernel],
+         {b.rigidity, b.divisor, b.tableX, b.tableZ, b.w[0], below, b.force, state,
+          directionOf(l, step - 1), b.forces, odd ? b.otherLeft : b.left, odd ? b.left : b.otherLeft,
+          b.answer},
+         transfer, groups);
+}
+
 // Runs the same cycle in fewer dispatches.
 int PlatePasses::runFusedCycle(Recorder& pass, std::size_t l, int sweeps)
 {
@@ -355,19 +401,12 @@ int PlatePasses::runFusedCycle(Recorder& pass, std::size_t l, int sweeps)
         solveTail(pass, l, sweeps, b.force);
         return 0;
     }
-    const LevelBuffers&        below = levels[l + 1];
-    const shared::TransferPush transfer{level(l), level(l + 1)};
-    const auto                 kernel  = std::size_t(sweeps - 1);
-    const auto                 owned   = std::uint32_t(shared::kRegion - 2 * shared::kRimPerSweep * sweeps);
-    const auto                 regions = [&](int cells) { return (std::uint32_t(cells) + owned) / owned; };
-    const Groups               groups{regions(level(l).cellsZ), regions(level(l).cellsX), loads_};
-    pass(k.fused->down[kernel], {b.rigidity, b.divisor, b.force, b.w[0], b.residual()}, shared::LevelPush{level(l)},
-         groups);
-    pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
+    goDown(pass, l, sweeps);
     const int from = runFusedCycle(pass, l + 1, sweeps);
-    pass(k.fused->up[kernel], {b.rigidity, b.divisor, b.force, b.tableX, b.tableZ, below.w[from], b.w[0], b.w[1]},
-         transfer, groups);
-    countWork(l, 2 * sweeps + 1);
+    pass(k.fused->up[std::size_t(sweeps - 1)],
+         {b.rigidity, b.divisor, b.tableX, b.tableZ, b.force, levels[l + 1].w[from], b.w[0], b.w[1]},
+         shared::TransferPush{level(l), level(l + 1)}, regionsOf(l, rimOfUp(sweeps)));
+    countWork(l, sweeps + 1);
     return 1;
 }
 
@@ -381,15 +420,6 @@ void PlatePasses::solveTail(Recorder& pass, std::size_t l, int sweeps, const Buf
     for (std::size_t n = l; n + 1 < levels.size(); ++n) countWork(n, 2 * sweeps + 1);
 }
 
-void PlatePasses::solveCoarsest(Recorder& pass, const Buffer& force)
-{
-    const std::size_t last = levels.size() - 1;
-    if (isFused())
-        solveTail(pass, last, 1, force);
-    else
-        pass(k.coarseSolve, {factor_, force, levels[last].w[0]}, shared::LevelPush{level(last)}, {1, 1, loads_});
-}
-
 void PlatePasses::computeResidual(Recorder& pass, std::size_t l)
 {
     const LevelBuffers& b = levels[l];
@@ -400,6 +430,7 @@ void PlatePasses::computeResidual(Recorder& pass, std::size_t l)
 void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins,
                                     double tolerance)
 {
+    if (isFused()) return takeFusedSteps(pass, l, count, sweeps, begins, tolerance);
     const LevelBuffers& b = levels[l];
     for (int n = 1; n <= count; ++n) {
         const auto               nodes = std::uint32_t(nodesOf(level(l)));
@@ -411,10 +442,6 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
         const int                 before = pass.list.dispatches();
         const Buffer&             z      = b.w[runCycle(pass, l, sweeps, l == 0)];
         if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
-        if (isFused()) {
-            takeFusedStep(pass, l, z, n, scalars.begins, scalars.tolerance);
-            continue;
-        }
         pass(k.dots, {b.left, z, b.answer, b.load, sums_}, vector, k.dots.groupsOver(partials_, 1, loads_));
         pass(k.beta, {sums_, state}, scalars, {1, 1, 1});
         pass(k.direction, {state, z, b.direction}, vector, inOrder(k.direction, l));
@@ -428,25 +455,79 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
     }
 }
 
-// Takes a step after its cycle in three dispatches. Every second direction lies in a memory of its own, and a list has
-// an even number of steps, or begins anew.
-void PlatePasses::takeFusedStep(Recorder& pass, std::size_t l, const Buffer& z, int step, std::uint32_t begins,
-                                float tolerance)
+// Takes the same steps in fewer dispatches. Every second direction, and on levels of regions every second residual, lies in
+// a memory of its own; a list ends with those that the next one begins with in the first memory. Of the tail's lists that is
+// so if their steps are even, or one.
+void PlatePasses::takeFusedSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins,
+                                 double tolerance)
+{
+    const LevelBuffers& b      = levels[l];
+    const bool          inTail = tail_->holds(l);
+    const auto          nodes  = std::uint32_t(nodesOf(level(l)));
+    for (int n = 1; n <= count; ++n) {
+        const std::uint32_t anew = n == 1 ? begins : 0;
+        if (inTail)
+            takeTailStep(pass, l, sweeps, n, anew, float(tolerance));
+        else
+            takeRegionStep(pass, l, sweeps, n, anew, float(tolerance));
+        // Not stoppable, as in takeGradientSteps().
+        if (inTail && count > 1)
+            pass.list.dispatch(k.update, {state, directionOf(l, n), b.forces, b.answer, b.left, b.force},
+                               shared::VectorPush{nodes, partials_, std::uint32_t(n)}, inOrder(k.update, l));
+    }
+    if (!inTail || count == 1) // the last step was not taken by the next one's way down
+        pass.list.dispatch(k.fused->finish,
+                           {state, b.direction, b.otherDirection, b.forces, b.answer, b.left,
+                            inTail ? b.left : b.otherLeft, b.force},
+                           shared::VectorPush{nodes, partials_, 0}, inOrder(k.fused->finish, l));
+}
+
+// Takes a step but for its update on a level whose cycle is one workgroup's.
+void PlatePasses::takeTailStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins,
+                               float tolerance)
 {
     const LevelBuffers& b     = levels[l];
-    const bool          odd   = step % 2 == 1;
-    const Buffer&       last  = odd ? b.direction : b.otherDirection;
-    const Buffer&       next  = odd ? b.otherDirection : b.direction;
     const auto          nodes = std::uint32_t(nodesOf(level(l)));
-    pass(k.fused->aim, {b.left, z, b.answer, b.load, *groupSums_, *tickets_, state}, shared::AimPush{nodes, begins},
+    solveTail(pass, l, sweeps, b.force);
+    if (l == 0) dispatchesPerCycle_ = 1;
+    pass(k.fused->aim, {b.left, b.w[0], b.answer, b.load, *groupSums_, *tickets_, state}, shared::AimPush{nodes, begins},
          sharedByGroups(l));
-    pass(k.fused->probe, {b.rigidity, z, last, next, b.forces, *groupSums_, *tickets_, state, arguments_},
+    probe(pass, l, b.w[0], step, tolerance);
+}
+
+// Takes a step on a larger level: its update on the way down, its dot products on the way up.
+void PlatePasses::takeRegionStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins,
+                                 float tolerance)
+{
+    const LevelBuffers& b      = levels[l];
+    const int           before = pass.list.dispatches();
+    goDown(pass, l, sweeps, step);
+    const int from = runFusedCycle(pass, l + 1, sweeps);
+    pass(k.fused->upAiming[std::size_t(sweeps - 1)],
+         {b.rigidity, b.divisor, b.tableX, b.tableZ, b.force, levels[l + 1].w[from], b.w[0], b.w[1],
+          step % 2 == 1 ? b.left : b.otherLeft, b.answer, b.load, *groupSums_, *tickets_, state},
+         shared::UpPush{level(l), level(l + 1), begins}, regionsOf(l, rimOfUp(sweeps)));
+    countWork(l, sweeps + 1);
+    if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
+    probe(pass, l, b.w[1], step, tolerance);
+}
+
+// Returns the memory of the direction that a step of a list takes.
+const Buffer& PlatePasses::directionOf(std::size_t l, int step) const
+{
+    return step % 2 == 1 ? levels[l].otherDirection : levels[l].direction;
+}
+
+// Finds a step's direction, its forces, and how far to go along it.
+void PlatePasses::probe(Recorder& pass, std::size_t l, const Buffer& z, int step, float tolerance)
+{
+    const LevelBuffers& b = levels[l];
+    pass(k.fused->probe,
+         {b.rigidity, z, directionOf(l, step - 1), directionOf(l, step), b.forces, *groupSums_, *tickets_, state,
+          arguments_},
          shared::ProbePush{level(l), loads_, std::uint32_t(argumentBytes() / 4), tolerance},
          everyNode(k.fused->probe, l));
     countWork(l, 1);
-    // Not stoppable, as in takeGradientSteps().
-    pass.list.dispatch(k.update, {state, next, b.forces, b.answer, b.left, b.force},
-                       shared::VectorPush{nodes, partials_, std::uint32_t(step)}, inOrder(k.update, l));
 }
 
 void PlatePasses::prepareRigidity(Recorder& pass)
@@ -506,17 +587,34 @@ void PlatePasses::enableSteps(CommandList& list) const
         list.copy(tiles_, levels[l].tiles.offset, arguments_, tileArgument(l), 4);
 }
 
-void PlatePasses::iterateNested(Recorder& pass)
+// Computes an answer on a coarse level for its load; returns that level.
+std::size_t PlatePasses::beginNested(Recorder& pass)
 {
     const std::size_t last = levels.size() - 1;
-    for (std::size_t l = 0; l < last; ++l)
+    const std::size_t top  = isFused() ? std::max<std::size_t>(tail_->first(), 1) : last;
+    for (std::size_t l = 0; l < top; ++l)
         pass(k.restrict, {levels[l].tableX, levels[l].tableZ, levels[l].load, levels[l + 1].load},
              shared::TransferPush{level(l), level(l + 1)}, everyNode(k.restrict, l + 1));
-    solveCoarsest(pass, levels[last].load);
-    for (std::size_t l = last; l-- > 0;) {
+    if (!isFused()) {
+        pass(k.coarseSolve, {factor_, levels[last].load, levels[last].w[0]}, shared::LevelPush{level(last)},
+             {1, 1, loads_});
+        return last;
+    }
+    pass(k.fused->nested,
+         tail_->nestedBindings({rigidity_, levels[tail_->first()].rigidity.offset},
+                               {divisor_, levels[tail_->first()].divisor.offset}, levels[top].load, levels[top].w[0]),
+         tail_->nestedPush(top, stepsOf(top)), tail_->groups());
+    for (std::size_t l = top; l < last; ++l) countWork(l, 1 + stepsOf(l) * (2 + 2 * k.smoothing.nested));
+    return top;
+}
+
+void PlatePasses::iterateNested(Recorder& pass)
+{
+    const std::size_t top = beginNested(pass);
+    for (std::size_t l = top; l-- > 0;) {
         const shared::TransferPush transfer{level(l), level(l + 1)};
         const LevelBuffers &       b = levels[l], &below = levels[l + 1];
-        if (l + 1 == last)
+        if (l + 1 == top)
             pass(k.interpolateFirst, {b.tableX, b.tableZ, below.w[0], b.answer}, transfer,
                  everyNode(k.interpolateFirst, l));
         else
@@ -526,7 +624,7 @@ void PlatePasses::iterateNested(Recorder& pass)
             pass(k.rims->start, {rimViews_[0], b.left, b.answer}, shared::LevelPush{level(0)}, {1, 1, loads_});
             computeResidual(pass, 0);
         }
-        if (l > 0) takeGradientSteps(pass, l, l == 1 ? kLastSteps : kNestedSteps, k.smoothing.nested, 2, 0);
+        if (l > 0) takeGradientSteps(pass, l, stepsOf(l), k.smoothing.nested, 2, 0);
     }
 }
 

@@ -30,7 +30,7 @@ struct LevelBuffers {
     // and its residual change places from level to level: a level interpolates the answer of the next coarser one, and
     // needs its residual's memory only when that answer has been used.
     const compute::Buffer &answer, &left, &direction, &forces; ///< x, r, p, A p, real
-    const compute::Buffer& otherDirection;                     ///< real: where the schedule is fused, every second p
+    const compute::Buffer &otherDirection, &otherLeft; ///< real: where the schedule is fused, every second p and r
 
     /// In a cycle A p is not computed yet: its memory holds the residual, in floats, or deflections that are set aside.
     [[nodiscard]] const compute::Buffer& residual() const noexcept { return forces; }
@@ -141,12 +141,17 @@ private:
     void              solveLastRim(Recorder& pass, std::size_t l, int at);
     [[nodiscard]] int smoothFirst(Recorder& pass, std::size_t l, int sweeps, bool rimIsSolved);
     [[nodiscard]] int runCycle(Recorder& pass, std::size_t l, int sweeps, bool rimIsSolved = false);
-    [[nodiscard]] int runFusedCycle(Recorder& pass, std::size_t l, int sweeps);
-    void takeFusedStep(Recorder& pass, std::size_t l, const compute::Buffer& z, int step, std::uint32_t begins,
-                       float tolerance);
+    [[nodiscard]] compute::Groups regionsOf(std::size_t l, int rim) const;
+    void                          goDown(Recorder& pass, std::size_t l, int sweeps, int step = 1);
+    [[nodiscard]] int             runFusedCycle(Recorder& pass, std::size_t l, int sweeps);
+    void takeFusedSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins, double tolerance);
+    void takeTailStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins, float tolerance);
+    void takeRegionStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins, float tolerance);
+    [[nodiscard]] const compute::Buffer& directionOf(std::size_t l, int step) const;
+    void                                 probe(Recorder& pass, std::size_t l, const compute::Buffer& z, int step, float tolerance);
     void prepareFused(Recorder& pass);
     void solveTail(Recorder& pass, std::size_t l, int sweeps, const compute::Buffer& force);
-    void solveCoarsest(Recorder& pass, const compute::Buffer& force);
+    [[nodiscard]] std::size_t beginNested(Recorder& pass);
 
     compute::Context&        context_;
     const PlateKernels::All& k;

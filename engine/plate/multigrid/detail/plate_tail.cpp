@@ -71,7 +71,9 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
       tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::processor),
       inverse_(context, "inverse of the coarsest level",
                sizeof(shared::FloatPair) * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::processor),
-      aside_(context, "deflections put aside", 4 * std::size_t(layout_.nodes) * loads, Intent::processor)
+      aside_(field(context, "deflections put aside")), loadOf_(field(context, "loads of the tail")),
+      answer_(field(context, "answers of the tail")), left_(field(context, "residuals of the tail")),
+      direction_(field(context, "directions of the tail"))
 {
     std::vector<Buffer> staging;
     CommandList         list(context);
@@ -87,6 +89,12 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
     context.run(list);
 }
 
+/// A number for every node of every level and load.
+Buffer PlateTail::field(compute::Context& context, const char* name) const
+{
+    return {context, name, 4 * std::size_t(layout_.nodes) * loads_, Intent::processor};
+}
+
 void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
 {
     list.dispatch(k.coarseInvert, {factor, inverse_}, shared::LevelPush{layout_.levels.back().plate},
@@ -96,6 +104,21 @@ void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
 shared::TailPush PlateTail::pushFrom(std::size_t level) const
 {
     return {std::uint32_t(level - layout_.first), std::uint32_t(layout_.levels.size()), layout_.nodes};
+}
+
+shared::NestedPush PlateTail::nestedPush(std::size_t level, int steps) const
+{
+    return {std::uint32_t(level - layout_.first), std::uint32_t(layout_.levels.size()), layout_.nodes,
+            std::uint32_t(steps)};
+}
+
+std::vector<compute::Binding> PlateTail::nestedBindings(const compute::Binding& rigidity,
+                                                        const compute::Binding& divisor, const Buffer& load,
+                                                        const Buffer& deflection) const
+{
+    std::vector<compute::Binding> all = bindings(rigidity, divisor, load, deflection);
+    for (const Buffer* each : {&loadOf_, &answer_, &left_, &direction_}) all.emplace_back(*each);
+    return all;
 }
 
 std::vector<compute::Binding> PlateTail::bindings(const compute::Binding& rigidity, const compute::Binding& divisor,

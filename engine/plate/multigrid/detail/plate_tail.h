@@ -35,6 +35,8 @@ public:
     void invertFactor(compute::CommandList& list, const compute::Buffer& factor) const;
 
     [[nodiscard]] shared::TailPush pushFrom(std::size_t level) const;
+    /// \param steps  of conjugate gradients on that level
+    [[nodiscard]] shared::NestedPush nestedPush(std::size_t level, int steps) const;
     [[nodiscard]] compute::Groups  groups() const noexcept { return {1, 1, loads_}; }
 
     /// Bindings of plate_tail.comp.
@@ -43,11 +45,20 @@ public:
                                                          const compute::Binding& divisor, const compute::Buffer& force,
                                                          const compute::Buffer& deflection) const;
 
+    /// Bindings of plate_nested.comp, from loads of a level to its deflection.
+    [[nodiscard]] std::vector<compute::Binding> nestedBindings(const compute::Binding& rigidity,
+                                                               const compute::Binding& divisor,
+                                                               const compute::Buffer& load,
+                                                               const compute::Buffer& deflection) const;
+
 private:
+    [[nodiscard]] compute::Buffer field(compute::Context& context, const char* name) const;
+
     const PlateKernels::All& k;
     TailLayout               layout_;
     std::uint32_t            loads_, coarsestNodes_;
     compute::Buffer          levels_, tableX_, tableZ_, inverse_, aside_;
+    compute::Buffer          loadOf_, answer_, left_, direction_; ///< of all levels in nested iteration
 };
 
 } // namespace palp
