@@ -27,6 +27,7 @@ PlateLevel region() { return push.fine; }
 shared float forces[kRegion * kRegion];
 const int kBeyond = kGathered;
 float forceAt(int i, int j);
+bool  isSwept(int i, int j) { return true; }
 
 #include "compute_shaders/plate_region.glsl"
 

@@ -6,7 +6,8 @@
 // plate_relax.comp, to the bit.
 //
 // The includer declares D and inverseDivisor, kBeyond, the nodes beyond its own ones on which it needs the result too,
-// and  PlateLevel region(), float forceAt(int i, int j),  which return the level and its forces.
+// and  PlateLevel region(), float forceAt(int i, int j), bool isSwept(int i, int j),  which return the level, its forces, and
+// whether a node takes part.
 
 layout(constant_id = 3) const int kSweeps = 2; // before, or after, the correction
 const int kRim = kRimPerSweep * kSweeps + kBeyond; // [nodes]
@@ -56,7 +57,7 @@ void relaxRegion(uint colour, int margin)
     for (int k = 0; k < kMostPerLane; ++k) {
         int   n = lane + k * kLanes;
         ivec2 at = nthOfColour(n, margin, colour);
-        if (n < count && isNode(at.x, at.y))
+        if (n < count && isNode(at.x, at.y) && isSwept(at.x, at.y))
             fresh[k] = relaxed(deflection(at.x, at.y), forceAt(at.x, at.y), operatorAt(g, at.x, at.y),
                                inverseDivisor[nodeAt(at.x, at.y)]);
     }
@@ -64,7 +65,7 @@ void relaxRegion(uint colour, int margin)
     for (int k = 0; k < kMostPerLane; ++k) {
         int   n = lane + k * kLanes;
         ivec2 at = nthOfColour(n, margin, colour);
-        if (n < count && isNode(at.x, at.y)) tile[placeOf(at.x, at.y)] = fresh[k];
+        if (n < count && isNode(at.x, at.y) && isSwept(at.x, at.y)) tile[placeOf(at.x, at.y)] = fresh[k];
     }
     barrier();
 }

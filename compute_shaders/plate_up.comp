@@ -31,6 +31,7 @@ PlateLevel region() { return push.fine; }
 
 const int kBeyond = 0;
 float forceAt(int i, int j);
+bool  isSwept(int i, int j) { return true; }
 
 #include "compute_shaders/plate_region.glsl"
 

@@ -21,6 +21,12 @@ struct RelaxPush {
     uint       colour; // parity of i + j of the nodes to relax
 };
 
+struct SweepPush {
+    PlateLevel level;
+    uint       first;     // parity of i + j of the nodes that are relaxed first
+    uint       tilesOnly; // 1: where the rigidity jumps; 0: everywhere
+};
+
 struct SmoothPush {
     PlateLevel level;
     float      ahead; // share of the last step that is taken again [1]; 0 in the first step

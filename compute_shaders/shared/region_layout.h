@@ -1,4 +1,4 @@
-// region_layout.h - the square regions of plate_down.comp and plate_up.comp (GLSL and C++).
+// region_layout.h - the square regions of plate_down.comp, plate_up.comp and plate_sweep.comp (GLSL and C++).
 #ifndef PALPATE_REGION_LAYOUT_H
 #define PALPATE_REGION_LAYOUT_H
 

@@ -4,6 +4,7 @@
 #include "compute_shaders/shared/cg_state.h"
 #include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/region_layout.h"
+#include "compute_shaders/shared/tile_layout.h"
 #include "engine/plate/multigrid/detail/plate_tail.h"
 #include "tests/plate/kernels/plate_shader_test.h"
 
@@ -342,6 +343,39 @@ TEST_F(FusedCycleTest, TheWayUpIsTheCorrectionAndSweeps)
                 EXPECT_TRUE(agree(measured, w, sizesOf(w), kCycleRounding));
             }
         }
+}
+
+TEST_F(FusedCycleTest, SweepsTogetherAreThoseOneByOneEverywhereOrInTiles)
+{
+    if (onHost()) GTEST_SKIP() << "the host has no such kernel";
+    for (const int sweeps : sweepCounts()) {
+        const compute::Kernel sweep = kernelOf(kernels::sweep(), {256, 1, 1}, sweeps);
+        for (const Plate& plate : regionPlates())
+            for (const bool tilesOnly : {false, true}) {
+                const unsigned first = tilesOnly ? 0 : 1;
+                SCOPED_TRACE(describe(plate) + ", sweeps: " + std::to_string(sweeps));
+                const RoughLevel   level(plate);
+                const std::size_t  nodes = nodesOf(level.g), stride = std::size_t(level.g.cellsZ) + 1;
+                const auto         force   = roughValues<float>(kLoads * nodes, 41);
+                const auto         before  = roughDeflection<float>(level.g, kLoads, 42);
+                const auto         inverse = host::inverseDivisor(level.g, level.rigidity);
+                const auto         chosen  = roughValues<float>(std::size_t(shared::tilesX(level.g) * shared::tilesZ(level.g)), 43);
+                std::vector<std::uint32_t> marks(chosen.size());
+                std::ranges::transform(chosen, marks.begin(), [](float value) { return value > 0 ? 1U : 0U; });
+                std::vector<float> w = before;
+                for (int n = 0; n < 2 * sweeps; ++n) {
+                    const auto next = host::relaxed(level, {inverse, force, w, w, w}, (first + unsigned(n)) % 2);
+                    for (std::size_t at = 0; at < w.size(); ++at) {
+                        const int tileI = int(at % nodes / stride) / shared::kTile, tileJ = int(at % nodes % stride) / shared::kTile;
+                        if (!tilesOnly || marks[std::size_t(tileI * shared::tilesZ(level.g) + tileJ)] == 1) w[at] = next[at];
+                    }
+                }
+                std::vector<float> measured(w.size());
+                dispatchTwice(sweep, {in(level.rigidity), in(inverse), in(force), in(marks), in(before), out(measured)},
+                              shared::SweepPush{level.g, first, tilesOnly ? 1U : 0U}, regionsOf(level.g, sweeps, 0));
+                EXPECT_TRUE(agree(measured, w, sizesOf(w), kCycleRounding));
+            }
+    }
 }
 
 TEST_F(FusedCycleTest, TheTailIsAWholeCycle)

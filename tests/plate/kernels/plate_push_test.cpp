@@ -14,6 +14,7 @@
 #include "tests/plate/kernels/push_echo_rigidity.spv.h"
 #include "tests/plate/kernels/push_echo_scalars.spv.h"
 #include "tests/plate/kernels/push_echo_smooth.spv.h"
+#include "tests/plate/kernels/push_echo_sweep.spv.h"
 #include "tests/plate/kernels/push_echo_tail.spv.h"
 #include "tests/plate/kernels/push_echo_transfer.spv.h"
 #include "tests/plate/kernels/push_echo_up.spv.h"
@@ -29,6 +30,7 @@ constexpr std::size_t kMostPushBytes = 128; ///< that every processor allows
 static_assert(sizeof(PlateLevel) == 48);
 static_assert(sizeof(LevelPush) == 48 && sizeof(LevelPush) <= kMostPushBytes);
 static_assert(sizeof(RelaxPush) == 52 && sizeof(RelaxPush) <= kMostPushBytes);
+static_assert(sizeof(SweepPush) == 56 && sizeof(SweepPush) <= kMostPushBytes);
 static_assert(sizeof(SmoothPush) == 56 && sizeof(SmoothPush) <= kMostPushBytes);
 static_assert(sizeof(TransferPush) == 96 && sizeof(TransferPush) <= kMostPushBytes);
 static_assert(sizeof(UpPush) == 100 && sizeof(UpPush) <= kMostPushBytes);
@@ -84,6 +86,8 @@ TEST_F(PlatePushTest, EveryFieldArrivesInItsPlace)
     const VectorPush   vector{1000U, 64U, 7U};
     const ScalarsPush  scalars{3U, 64U, 2U, 768U, 1e-6F};
 
+    const SweepPush sweep{kFine, 1U, 7U};
+    EXPECT_EQ(echoed(push_echo_sweep_spv, sweep), Words(sweep.level, sweep.first, sweep.tilesOnly));
     const UpPush    up{kFine, kCoarse, 2U};
     const AimPush   aim{1000U, 2U};
     const ProbePush probe{kFine, 3U, 768U, 1e-6F};

@@ -17,6 +17,8 @@ layout(set = 0, binding = 0) writeonly buffer Words { uint words[]; };
 layout(push_constant) uniform Constants { LevelPush push; };
 #elif defined(ECHO_RELAX)
 layout(push_constant) uniform Constants { RelaxPush push; };
+#elif defined(ECHO_SWEEP)
+layout(push_constant) uniform Constants { SweepPush push; };
 #elif defined(ECHO_SMOOTH)
 layout(push_constant) uniform Constants { SmoothPush push; };
 #elif defined(ECHO_TRANSFER)
@@ -70,6 +72,10 @@ void main()
 #elif defined(ECHO_RELAX)
     echo(push.level);
     echo(push.colour);
+#elif defined(ECHO_SWEEP)
+    echo(push.level);
+    echo(push.first);
+    echo(push.tilesOnly);
 #elif defined(ECHO_SMOOTH)
     echo(push.level);
     echo(push.ahead);

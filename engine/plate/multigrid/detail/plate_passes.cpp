@@ -255,6 +255,7 @@ int PlatePasses::smoothFromZero(Recorder& pass, std::size_t l, int sweeps)
 {
     const LevelBuffers& b  = levels[l];
     int                 at = 0;
+    if (tail_) return sweepRegions(pass, l, at, sweeps, 0, Swept::allFromZero);
     if (k.smoothing.by == Smoother::redBlack) {
         for (int n = 0; n < sweeps; ++n) at = sweepBothColours(pass, l, at, 0, n == 0);
         return at;
@@ -270,6 +271,7 @@ int PlatePasses::smoothFromZero(Recorder& pass, std::size_t l, int sweeps)
 // Makes the same sweeps from w[at] in the reverse order.
 int PlatePasses::smoothInReverse(Recorder& pass, std::size_t l, int at, int sweeps)
 {
+    if (tail_) return sweepRegions(pass, l, at, sweeps, 1, Swept::all);
     if (k.smoothing.by == Smoother::redBlack)
         for (int n = 0; n < sweeps; ++n) at = sweepBothColours(pass, l, at, 1, false);
     else
@@ -288,13 +290,32 @@ int PlatePasses::takeChebyshevStep(Recorder& pass, std::size_t l, int at, const 
     return 1 - at;
 }
 
-// Makes extra sweeps of w[at] in the tiles where the rigidity jumps. The residual's memory is free while they run.
-void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
+// Makes `sweeps` sweeps in one dispatch, from w[at] or from zero; returns which w holds the result.
+int PlatePasses::sweepRegions(Recorder& pass, std::size_t l, int at, int sweeps, std::uint32_t first, Swept what)
 {
-    const int sweeps = jumps_ == Jumps::some     ? k.smoothing.tiles
-                       : jumps_ == Jumps::strong ? k.smoothing.strongTiles
-                                                 : 0;
-    if (sweeps == 0) return;
+    const LevelBuffers& b = levels[l];
+    pass(k.fused->sweep[std::size_t(sweeps - 1)],
+         {b.rigidity, b.divisor, b.force, b.marks, what == Swept::allFromZero ? *zeroes_ : b.w[at], b.w[1 - at]},
+         shared::SweepPush{level(l), first, what == Swept::tiles ? 1U : 0U}, regionsOf(l, rimOfUp(sweeps)));
+    if (what != Swept::tiles) countWork(l, sweeps);
+    return 1 - at;
+}
+
+// Makes extra sweeps of w[at] in the tiles where the rigidity jumps; returns which w holds the result. The residual's
+// memory is free while they run.
+int PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first)
+{
+    constexpr int kTogether = 2; // of a dispatch where passes are fused
+    const int     sweeps    = jumps_ == Jumps::some     ? k.smoothing.tiles
+                              : jumps_ == Jumps::strong ? k.smoothing.strongTiles
+                                                        : 0;
+    if (sweeps == 0) return at;
+    work.tileSweeps.resize(levels.size());
+    work.tileSweeps[l] += sweeps;
+    if (tail_) {
+        for (int n = 0; n < sweeps; n += kTogether) at = sweepRegions(pass, l, at, kTogether, first, Swept::tiles);
+        return at;
+    }
     const LevelBuffers& b = levels[l];
     for (int n = 0; n < sweeps; ++n)
         for (std::uint32_t colour : {first, 1 - first}) {
@@ -303,8 +324,7 @@ void PlatePasses::sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_
                                        push, arguments_, tileArgument(l));
             pass.list.dispatchIndirect(k.copyTile, {b.tiles, b.residual(), b.w[at]}, push, arguments_, tileArgument(l));
         }
-    work.tileSweeps.resize(levels.size());
-    work.tileSweeps[l] += sweeps;
+    return at;
 }
 
 // Sets w[at] to the exact answer on the rim, with all other nodes at 0.
@@ -331,9 +351,7 @@ int PlatePasses::smoothFirst(Recorder& pass, std::size_t l, int sweeps, bool rim
         solveFirstRim(pass, l, 0);
         return smoothInReverse(pass, l, 0, sweeps);
     }
-    const int at = smoothFromZero(pass, l, sweeps);
-    sweepTiles(pass, l, at, 0);
-    return at;
+    return sweepTiles(pass, l, smoothFromZero(pass, l, sweeps), 0);
 }
 
 // Runs one symmetric cycle for the forces of level l; returns which of its w holds the answer.
@@ -359,8 +377,7 @@ int PlatePasses::runCycle(Recorder& pass, std::size_t l, int sweeps, bool rimIsS
     pass(k.restrict, {b.tableX, b.tableZ, b.residual(), below.force}, transfer, everyNode(k.restrict, l + 1));
     const int from = runCycle(pass, l + 1, sweeps);
     pass(k.correct, {b.tableX, b.tableZ, below.w[from], b.w[1 - at], b.w[at]}, transfer, everyNode(k.correct, l));
-    at = 1 - at;
-    sweepTiles(pass, l, at, 1);
+    at = sweepTiles(pass, l, 1 - at, 1);
     at = smoothInReverse(pass, l, at, sweeps);
     if (jumps_ == Jumps::rims) solveLastRim(pass, l, at);
     return at;
@@ -455,43 +472,44 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
     }
 }
 
-// Takes the same steps in fewer dispatches. Every second direction, and on levels of regions every second residual, lies in
-// a memory of its own; a list ends with those that the next one begins with in the first memory. Of the tail's lists that is
-// so if their steps are even, or one.
+// Takes the same steps in fewer dispatches. Every second direction, and where regions take steps every second residual, lies
+// in a memory of its own; a list ends with those that the next one begins with in the first memory. Of the tail's steps that
+// is so if their number is even, or one.
 void PlatePasses::takeFusedSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins,
                                  double tolerance)
 {
-    const LevelBuffers& b      = levels[l];
-    const bool          inTail = tail_->holds(l);
-    const auto          nodes  = std::uint32_t(nodesOf(level(l)));
+    const LevelBuffers& b         = levels[l];
+    const bool          byRegions = !tail_->holds(l);
+    const auto          nodes     = std::uint32_t(nodesOf(level(l)));
     for (int n = 1; n <= count; ++n) {
-        const std::uint32_t anew = n == 1 ? begins : 0;
-        if (inTail)
-            takeTailStep(pass, l, sweeps, n, anew, float(tolerance));
-        else
+        const std::uint32_t anew   = n == 1 ? begins : 0;
+        const int           before = pass.list.dispatches();
+        if (byRegions)
             takeRegionStep(pass, l, sweeps, n, anew, float(tolerance));
+        else
+            takeTailStep(pass, l, sweeps, n, anew, float(tolerance));
+        constexpr int kBeside[] = {2, 1}; // dispatches that are not of the cycle
+        if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before - kBeside[byRegions];
         // Not stoppable, as in takeGradientSteps().
-        if (inTail && count > 1)
+        if (!byRegions && count > 1)
             pass.list.dispatch(k.update, {state, directionOf(l, n), b.forces, b.answer, b.left, b.force},
                                shared::VectorPush{nodes, partials_, std::uint32_t(n)}, inOrder(k.update, l));
     }
-    if (!inTail || count == 1) // the last step was not taken by the next one's way down
+    if (byRegions || count == 1) // the last step was not taken by the next one's way down
         pass.list.dispatch(k.fused->finish,
                            {state, b.direction, b.otherDirection, b.forces, b.answer, b.left,
-                            inTail ? b.left : b.otherLeft, b.force},
+                            byRegions ? b.otherLeft : b.left, b.force},
                            shared::VectorPush{nodes, partials_, 0}, inOrder(k.fused->finish, l));
 }
 
-// Takes a step but for its update on a level whose cycle is one workgroup's.
+// Takes a step, but for its update, on a level whose cycle is one workgroup's.
 void PlatePasses::takeTailStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins,
                                float tolerance)
 {
-    const LevelBuffers& b     = levels[l];
-    const auto          nodes = std::uint32_t(nodesOf(level(l)));
+    const LevelBuffers& b = levels[l];
     solveTail(pass, l, sweeps, b.force);
-    if (l == 0) dispatchesPerCycle_ = 1;
-    pass(k.fused->aim, {b.left, b.w[0], b.answer, b.load, *groupSums_, *tickets_, state}, shared::AimPush{nodes, begins},
-         sharedByGroups(l));
+    pass(k.fused->aim, {b.left, b.w[0], b.answer, b.load, *groupSums_, *tickets_, state},
+         shared::AimPush{std::uint32_t(nodesOf(level(l))), begins}, sharedByGroups(l));
     probe(pass, l, b.w[0], step, tolerance);
 }
 
@@ -499,8 +517,7 @@ void PlatePasses::takeTailStep(Recorder& pass, std::size_t l, int sweeps, int st
 void PlatePasses::takeRegionStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins,
                                  float tolerance)
 {
-    const LevelBuffers& b      = levels[l];
-    const int           before = pass.list.dispatches();
+    const LevelBuffers& b = levels[l];
     goDown(pass, l, sweeps, step);
     const int from = runFusedCycle(pass, l + 1, sweeps);
     pass(k.fused->upAiming[std::size_t(sweeps - 1)],
@@ -508,7 +525,6 @@ void PlatePasses::takeRegionStep(Recorder& pass, std::size_t l, int sweeps, int 
           step % 2 == 1 ? b.left : b.otherLeft, b.answer, b.load, *groupSums_, *tickets_, state},
          shared::UpPush{level(l), level(l + 1), begins}, regionsOf(l, rimOfUp(sweeps)));
     countWork(l, sweeps + 1);
-    if (l == 0) dispatchesPerCycle_ = pass.list.dispatches() - before;
     probe(pass, l, b.w[1], step, tolerance);
 }
 

@@ -130,13 +130,16 @@ private:
     void                          countWork(std::size_t l, double applications);
     [[nodiscard]] std::size_t     argumentBytes() const { return kSizeBytes * (kSizes + grids_.levels.size()); }
     [[nodiscard]] std::size_t     tileArgument(std::size_t l) const { return kSizeBytes * (kSizes + l); }
+    /// Returns whether levels are smoothed in plate_down.comp, plate_up.comp and the tail, which have no extra sweeps.
     [[nodiscard]] bool            isFused() const noexcept { return tail_ && jumps_ == Jumps::none; }
 
     [[nodiscard]] int smoothFromZero(Recorder& pass, std::size_t l, int sweeps);
     [[nodiscard]] int smoothInReverse(Recorder& pass, std::size_t l, int at, int sweeps);
     [[nodiscard]] int sweepBothColours(Recorder& pass, std::size_t l, int at, std::uint32_t first, bool fromZero);
     [[nodiscard]] int takeChebyshevStep(Recorder& pass, std::size_t l, int at, const ChebyshevStep& how);
-    void              sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
+    enum class Swept { all, allFromZero, tiles };
+    [[nodiscard]] int sweepRegions(Recorder& pass, std::size_t l, int at, int sweeps, std::uint32_t first, Swept what);
+    [[nodiscard]] int sweepTiles(Recorder& pass, std::size_t l, int at, std::uint32_t first);
     void              solveFirstRim(Recorder& pass, std::size_t l, int at);
     void              solveLastRim(Recorder& pass, std::size_t l, int at);
     [[nodiscard]] int smoothFirst(Recorder& pass, std::size_t l, int sweeps, bool rimIsSolved);
