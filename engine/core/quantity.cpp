@@ -138,7 +138,9 @@ std::string formatQuantity(double value, std::string_view siUnit)
     const double rounded  = std::strtod(text, nullptr);
     const int    exponent = std::atoi(std::strchr(text, 'e') + 1);
     const int    step     = int(std::floor(exponent / 3.0));
-    if (std::abs(step) > kMostSteps)
+    if (siUnit.starts_with("1/")) // a prefix before it would read as another unit
+        std::snprintf(text, sizeof text, "%.3g %.*s", rounded, length, siUnit.data());
+    else if (std::abs(step) > kMostSteps)
         std::snprintf(text, sizeof text, "%.1e %.*s", value, length, siUnit.data());
     else
         std::snprintf(text, sizeof text, "%.*f %s%.*s", 2 - (exponent - 3 * step), rounded / std::pow(10.0, 3 * step),

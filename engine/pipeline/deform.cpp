@@ -784,13 +784,16 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
 
 std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
-    if (!patch.curvature || !patch.covered.values().empty()) return {};
+    if (settings.theory != Theory::shell || !patch.deformed() || !patch.covered.values().empty()) return {};
     const Footprint finger(unitLoad(patch, settings));
     const auto      felt = [&](Edge edge) {
         Shell shell         = shellOf(patch);
         shell.bending.edges = {edge, edge, edge, edge};
         shell.stressEdges   = stressEdgesFor(shell.bending.edges);
-        const double c = solver.solveFootprints(shell, {&finger, 1}, 0, settings.tolerance).responses.front().work;
+        const auto of       = [&](const auto& what) {
+            return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance).responses.front().work;
+        };
+        const double c = patch.curvature ? of(shell) : of(shell.bending);
         return feltStiffness(settings.forceLaw, patch.contactStiffness, c);
     };
     return SupportRange{felt(Edge::supported), felt(Edge::clamped)};

@@ -58,10 +58,10 @@ struct SupportRange {
     double clamped   = 0; ///< held as firmly as can be
 };
 
-/// Solves the patch's shell with either support on all sides. Where a surface is curved one way, or both ways against
+/// Solves the patch's shell, or its plate where it is flat, with either support on all sides. Where a surface is curved one way, or both ways against
 /// each other, a dent reaches as far as the object does, and its support decides within this range; where it bulges both
 /// ways and the window is some eight lengths wide, both are nearly alike.
-/// \return empty if the patch is no shell, or its window spans an object, which has supports of its own
+/// \return empty if the settings ask for no shell, or the window spans an object, which has supports of its own
 [[nodiscard]] std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings,
                                                        PlateSolver& solver);
 

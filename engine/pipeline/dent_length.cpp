@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -54,7 +55,9 @@ std::optional<DentLengths> lengthsOf(const SoftObject& object, const PatchSettin
     const double        nu = material.poissonRatio, h = material.thickness;
     std::vector<double> found; // [m]
     for (const Bend& bend : bends) {
-        const double ends = 12 * (1 - nu * nu) * std::max(bend.gaussian, 0.0) / (h * h) +
+        // What is curved one way ends nothing, whichever side of it the fits' noise says that it bends to the other way.
+        const bool   bulges = bend.gaussian > kOneWay * bend.largest * bend.largest;
+        const double ends   = 12 * (1 - nu * nu) * (bulges ? bend.gaussian : 0) / (h * h) +
                             settings.foundation / object.rigidity(bend.point); // [1/m^4]
         const double length = std::pow(ends, -0.25);
         if (length < object.cloud().bounds().diagonal()) found.push_back(length);
@@ -74,6 +77,50 @@ double shallowWindow(std::vector<Bend> bends)
     return 8 * kMostSag / sharp->largest;
 }
 
+/// Returns the width of a square as large as the disc about a place of which the object's surface fills four fifths [m].
+///
+/// Of a sample of points each stands for the area around it, and areas are compared with those near the place, so that it
+/// does not matter whether one face of the object was given or two.
+/// \param sample  even over the object
+double filledWidth(const SoftObject& object, const std::vector<std::uint32_t>& sample, const glm::dvec3& place)
+{
+    constexpr double      kFilled = 0.8; // [1]
+    constexpr std::size_t kNear   = 64;  // points: the density near the place is then known to an eighth
+    struct Near {
+        double square, area; ///< of the distance, and around the point [m^2]
+    };
+    std::vector<Near> near;
+    for (const std::uint32_t point : sample) {
+        const glm::dvec3 d       = object.positions()[point] - place;
+        const double     spacing = object.survey().spacing(point);
+        near.push_back({glm::dot(d, d), spacing * spacing});
+    }
+    std::ranges::sort(near, {}, &Near::square);
+    double area = 0, density = 0, reach = 0; // [m^2]; [1]; [m^2]
+    for (std::size_t k = 0; k < near.size(); ++k) {
+        area += near[k].area;
+        if (k + 1 == std::min(kNear, near.size())) density = area / near[k].square;
+        if (k + 1 >= kNear && area >= kFilled * density * near[k].square) reach = near[k].square;
+    }
+    return std::sqrt(std::numbers::pi * (reach > 0 ? reach : near.back().square));
+}
+
+/// Returns the width up to which windows about the places in the object's middle are filled [m]: beside a border none is.
+double widthOfObject(const SoftObject& object)
+{
+    constexpr std::size_t      kSample = 1500, kEnough = 32; // points, places
+    constexpr double           kMiddle = 0.9;                // of the places less is filled at so many [1]
+    std::vector<std::uint32_t> sample(std::min(kSample, object.size()));
+    for (std::size_t k = 0; k < sample.size(); ++k)
+        sample[k] = std::uint32_t((2 * k + 1) * object.size() / (2 * sample.size()));
+    std::vector<double> widths;
+    for (std::size_t k = 0; k < std::min(kEnough, sample.size()); ++k)
+        widths.push_back(filledWidth(object, sample, object.positions()[sample[k * sample.size() / kEnough]]));
+    const auto middle = widths.begin() + std::ptrdiff_t(kMiddle * double(widths.size() - 1));
+    std::ranges::nth_element(widths, middle);
+    return *middle;
+}
+
 } // namespace
 
 std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings)
@@ -86,7 +133,8 @@ double dentWindow(const SoftObject& object, const PatchSettings& settings)
     const auto   bends = bendsOf(object, settings);
     const double least = 4 * settings.footprintRadius;
     // A dent that dies away hardly feels what is steep, see patch_warnings.cpp, and would feel edges that are nearer.
-    if (const auto lengths = lengthsOf(object, settings, bends)) return std::max(lengths->window(), least);
+    if (const auto lengths = lengthsOf(object, settings, bends))
+        return std::max(std::min(lengths->window(), widthOfObject(object)), least);
     return std::min(settings.window, std::max(shallowWindow(bends), least));
 }
 

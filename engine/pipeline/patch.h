@@ -123,13 +123,15 @@ struct Patch {
     std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not
     std::pair<double, double> principal{}; ///< curvatures at the contact, the larger by size first; 0 without a shell
                                            ///< [1/m] > 0: bulges to the finger
-    double      shellLength = 0; ///< l over which a dent of the shell dies away [m]; 0 where no shell was asked for
+    double      shellLength = 0; ///< l over which a dent dies away, a foundation included [m]; 0 without a shell
+    double      sag         = 0; ///< of the touched surface across the patch window, over its width [1]; of a shell
     double      spacing     = 0; ///< typical distance of neighbouring points at the contact [m]
     double      noise       = 0; ///< standard deviation of the points there about the surface [m]
     double      thickness   = 0; ///< of the object at the contact [m]
     std::size_t nodesWithoutPoint = 0; ///< see Resampled
     NodeField   covered{};     ///< share of the sheet at the nodes, where the window spans the object [1]; empty: all
     double      beyond    = 1; ///< rigidity beyond the sheet's border over the sheet's [1]; 1: there is no border
+    NodeField   held{};        ///< share of each node that the scene holds, by a foundation and in the sheet's plane [1]; empty: none
     std::size_t heldNodes = 0; ///< nodes that the scene holds
     NodeField   sheared{};     ///< see Shell, where the window spans the object
     /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.

@@ -87,27 +87,28 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
         result.push_back(
             "the surface is curved, with a radius of " + formatQuantity(1 / patch.sphere.fit.curvature, "m") +
             ", and bent as if it were flat: the forces within it are left out, and may be felt; set theory "
-            "shell");
+            "shell, unless it is a thin sheet between two faces that bulge apart");
     if (!patch.flatBecause.empty())
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;
     const auto [most, least] = patch.principal;
     const bool       whole   = settings.windowOf == WindowOf::object;
     const double     window = bentSize(patch), lengths = window / patch.shellLength;
-    constexpr double kOneWay = 0.1; // the lesser curvature over the larger, below which a dent reaches far [1]
-    if (!whole && least / most < kOneWay)
+    const bool       ends   = least / most > kOneWay || settings.foundation > 0; // dents, somewhere
+    if (!whole && lengths < kNearly * kLocalWindow && ends)
+        result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
+                         formatQuantity(patch.shellLength, "m") +
+                         " each), so that its edges are felt; try a --window of " +
+                         formatQuantity(kLocalWindow * patch.shellLength, "m") +
+                         ", or object, with what holds it, where the object is smaller");
+    else if (!whole && !ends)
         result.push_back(
             "the surface is curved " +
             std::string(least / most < -kOneWay ? "both ways against each other" : "one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    else if (!whole && lengths < kNearly * kLocalWindow)
-        result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
-                         formatQuantity(patch.shellLength, "m") +
-                         " each), so that its edges are felt; try a --window of " +
-                         formatQuantity(kLocalWindow * patch.shellLength, "m"));
-    if (const double sag = std::abs(most) * window / 8; sag > kMostSag)
-        result.push_back(tooDeep(sag, least / most, window));
+    constexpr double kShown = 0.005; // half of what is printed of a sag is no excess [1]
+    if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most, window));
     if (patch.unrolled > kFolded)
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }
@@ -175,8 +176,10 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (settings.foundation == 0 && !patch.curvature &&
         !whole) // a shell's own stiffness ends its dents; see addCurvature()
         result.push_back(
-            "there is no foundation, so the size of the patch window decides: compliance grows with its area");
-    if (const auto width = windowWanted(patch.plate); !whole && width && window < *width)
+            "there is no foundation, so the size of the patch window decides: compliance grows with its area" +
+            std::string(settings.theory == Theory::shell ? ", and with how its edges are held, see the support range"
+                                                         : ""));
+    if (const auto width = windowWanted(patch.plate); !whole && !patch.curvature && width && window < *width)
         result.push_back("the patch window of " + formatQuantity(window, "m") + " is narrower than the " +
                          formatQuantity(*width, "m") +
                          " that this rigidity and foundation ask for: its edges are felt");

@@ -107,5 +107,38 @@ TEST(DentLength, DecidesTheWindowIfTheSettingsSaySo)
     EXPECT_EQ(settledFor(sheet([](double, double) { return 0; }), settings).window, 40e-3) << "nothing decides";
 }
 
+TEST(DentLength, OfATubeIsUnknownHoweverItsPointsAreDrawn)
+{
+    constexpr double kRadius = 10e-3;
+    PatchSettings    settings = shell();
+    settings.windowOf         = WindowOf::dent;
+    for (unsigned seed = 1; seed <= 5; ++seed) { // fits see 0.001 to 0.04 1/m along it, of either sign
+        std::mt19937                           random(seed);
+        std::uniform_real_distribution<double> along(-50e-3, 50e-3), turn(0, 2 * std::numbers::pi);
+        std::vector<glm::dvec3>                points;
+        for (int n = 0; n < 40000; ++n) {
+            const double t = turn(random);
+            points.emplace_back(along(random), kRadius * std::cos(t), kRadius * std::sin(t));
+        }
+        const SoftObject tube(PointCloud(std::move(points), std::vector<double>(40000, 1e6), StiffnessKind::modulus), kSheet);
+        EXPECT_FALSE(dentLengths(tube, settings)) << seed;
+        EXPECT_NEAR(settledFor(tube, settings).window, 2 * kRadius, 0.15 * kRadius) << "what sags a quarter of its width";
+    }
+}
+
+TEST(DentLength, NoWindowIsWiderThanTheObject)
+{
+    PatchSettings settings = shell();
+    settings.windowOf      = WindowOf::dent;
+    const auto windowOf    = [&](double radius) {
+        return settledFor(sheet([=](double x, double y) { return -(x * x + y * y) / (2 * radius); }), settings).window;
+    };
+    EXPECT_NEAR(windowOf(0.2) / lengthOf(0.2), 8, 0.6) << "62 mm fit on 100 mm; a paraboloid bends less away from its middle";
+    for (const double radius : {1.0, 2.0, 10.0}) {
+        EXPECT_GT(windowOf(radius), 70e-3) << radius;
+        EXPECT_LT(windowOf(radius), 100e-3) << radius;
+    }
+}
+
 } // namespace
 } // namespace palp

@@ -296,6 +296,47 @@ TEST(ShellPatch, SaysWhatLimitsIt)
     EXPECT_TRUE(warned(touchOf(ball, {0, 0, 18e-3}), kShell, "too deep"));
 }
 
+TEST(ShellPatch, SagsAsTheSurfaceDoesAcrossTheWindowNotAsItBendsAtOnePlace)
+{
+    EXPECT_NEAR(touchOf(ellipsoid(glm::dvec3(50e-3), 0), {0, 0, 50e-3}).sag, 40e-3 / (8 * 50e-3), 0.005) << "a sphere";
+    const auto tube = sheet([](double x, double) { return std::sqrt(0.08 * 0.08 - x * x); });
+    EXPECT_NEAR(touchOf(tube, {0, 0, 80e-3}).sag, 40e-3 / (8 * 80e-3), 0.005) << "a tube";
+    const auto bump = [](double x, double y) { return 3e-3 * std::exp(-(x * x + y * y) / (2 * 8e-3 * 8e-3)); };
+    const auto hill = sheet(bump);
+    for (const double x : {0.0, 8e-3, 16e-3}) { // it bends by 47 1/m on top, and 21 1/m at its foot
+        EXPECT_LT(touchOf(hill, {x, 0, bump(x, 0)}).sag, 0.13) << x;
+        EXPECT_GT(touchOf(hill, {x, 0, bump(x, 0)}).sag, 0.01) << x;
+    }
+}
+
+TEST(ShellPatch, OnAFoundationADentsLengthIsThatOfBoth)
+{
+    const SoftObject dome   = ellipsoid(glm::dvec3(50e-3), 0);
+    PatchSettings    on     = kShell;
+    const double     bare   = touchOf(dome, {0, 0, 50e-3}).shellLength;
+    on.foundation           = kSkin.rigidity(kModulus) / std::pow(bare, 4); // as stiff as the membrane
+    const Patch both        = touchOf(dome, {0, 0, 50e-3}, on);
+    EXPECT_NEAR(both.shellLength / bare, std::pow(0.5, 0.25), 0.01);
+    on.foundation *= 100;
+    on.window = 12e-3; // 8.6 of its lengths, 2.7 of the bare shell's
+    EXPECT_FALSE(warned(touchOf(dome, {0, 0, 50e-3}, on), on, "edges are felt"));
+    const auto tube = sheet([](double x, double) { return std::sqrt(0.08 * 0.08 - x * x); });
+    EXPECT_FALSE(warned(touchOf(tube, {0, 0, 80e-3}, on), on, "as far as the object")) << "the foundation ends it";
+}
+
+TEST(ShellPatch, OfWhatIsFlatTheRangeBetweenSupportsIsToldToo)
+{
+    const auto flat  = sheet([](double, double) { return 0; });
+    const auto patch = touchOf(flat, {});
+    ASSERT_FALSE(patch.curvature);
+    PlateSolver host("host");
+    const auto  range = supportRange(patch, kShell, host);
+    ASSERT_TRUE(range);
+    EXPECT_NEAR(range->supported / patch.feltStiffness, 1, 1e-3) << "its own edges";
+    EXPECT_NEAR(range->clamped / range->supported, 0.01160 / 0.00560, 0.1) << "Timoshenko, square plates under a point load";
+    EXPECT_FALSE(supportRange(patch, asPlate(), host)) << "a plate's edges are what the scene says";
+}
+
 TEST(ShellPatch, APlateThatIsCurvedIsNoSilentOne)
 {
     const char* const words = "bent as if it were flat";
@@ -336,12 +377,17 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     EXPECT_TRUE(says("curved one way", curved(20, 1.9)));
     EXPECT_TRUE(says("curved one way", curved(-20, 1.9)));
     EXPECT_TRUE(says("both ways against each other", curved(20, -2.1)));
-    EXPECT_FALSE(says("too deep", curved(49.9, 49.9))); // a sag of 10 mm
-    EXPECT_TRUE(says("it sags 25.1 %", curved(50.1, 50.1)));
-    EXPECT_TRUE(says("it sags 25.1 %", curved(-50.1, -50.1)));
-    EXPECT_TRUE(says("too soft by up to 4 %", curved(100, 51)));
-    EXPECT_TRUE(says(("a --window of " + formatQuantity(20e-3, "m")).c_str(), curved(100, 49)));
-    EXPECT_TRUE(says("too soft by up to 100 %", curved(100, 49)));
+    const auto sagging = [](double sag, double least) {
+        return [=](Patch& p) {
+            p.sag       = sag;
+            p.principal = {100, least};
+        };
+    };
+    EXPECT_FALSE(says("too deep", sagging(0.254, 100))) << "25 % is what may be";
+    EXPECT_TRUE(says("it sags 25.6 %", sagging(0.256, 100)));
+    EXPECT_TRUE(says("too soft by up to 4 %", sagging(0.5, 51)));
+    EXPECT_TRUE(says(("a --window of " + formatQuantity(20e-3, "m")).c_str(), sagging(0.5, 49)));
+    EXPECT_TRUE(says("too soft by up to 100 %", sagging(0.5, 49)));
     EXPECT_FALSE(says("folds", folded(0.49)));
     EXPECT_TRUE(says("folds", folded(0.51)));
     const auto wide = [&](Patch& p) { // how an object is held matters more there than the window does

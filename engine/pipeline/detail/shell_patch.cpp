@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/extremes.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/whole_object.h"
 
 namespace palp {
@@ -19,11 +20,70 @@ double lengthRoot(const Material& material)
     return std::sqrt(material.thickness) / std::pow(12 * (1 - nu * nu), 0.25);
 }
 
+/// Returns the principal curvatures of a tensor [1/m], the larger by size first.
+std::pair<double, double> principalOf(double x, double z, double xz)
+{
+    const double mean = (x + z) / 2, apart = std::hypot((x - z) / 2, xz);
+    return {mean + std::copysign(apart, mean), mean - std::copysign(apart, mean)};
+}
+
+double meanOf(const NodeField& field, const NodeField& covered)
+{
+    double sum = 0, all = 0;
+    for (std::size_t n = 0; n < field.values().size(); ++n) {
+        const double share = covered.values().empty() ? 1 : covered.values()[n];
+        sum += share * field.values()[n];
+        all += share;
+    }
+    return all > 0 ? sum / all : 0;
+}
+
+/// Returns the depth below the plane at the contact that nearly all of the touched surface in the window stays within [m].
+double depthOf(const Patch& patch, const SoftObject& object, const LaidPoints& points)
+{
+    constexpr double      kNearly = 0.98; // stray points do not count [1]
+    constexpr std::size_t kEnough = 4000; // points
+    const double          reach   = bentSize(patch) / 2;
+    std::vector<double>   depths;
+    const std::size_t     step = points.ranks.size() / kEnough + 1;
+    for (std::size_t k = 0; k < points.ranks.size(); k += step) {
+        if (std::hypot(points.positions[k].x, points.positions[k].z) > reach) continue;
+        const glm::dvec3 place = object.index().positionsByRank()[points.ranks[k]];
+        depths.push_back(std::abs(glm::dot(place - patch.chart.origin, patch.chart.frame.normal)));
+    }
+    if (depths.empty()) return 0;
+    const auto nearly = depths.begin() + std::ptrdiff_t(kNearly * double(depths.size() - 1));
+    std::ranges::nth_element(depths, nearly);
+    return *nearly;
+}
+
+/// Returns how deep the surface is across the window, over its width [1]: by its mean curvature there, which also says how
+/// far a tube wraps round, or by how far it reaches, where it turns back on the way.
+double sagOf(const Patch& patch, const SoftObject& object, const LaidPoints& points)
+{
+    const CurvatureField& field = *patch.curvature;
+    const double          width = bentSize(patch);
+    const auto            mean  = [&](const NodeField& one) { return meanOf(one, patch.covered); };
+    const double          most  = std::abs(principalOf(mean(field.x), mean(field.z), mean(field.xz)).first);
+    return std::max(most * width / 8, depthOf(patch, object, points) / width);
+}
+
 double meanOfSquares(const NodeField& field)
 {
     double sum = 0;
     for (const double value : field.values()) sum += value * value;
     return sum / double(field.values().size());
+}
+
+/// Returns the length over which a dent at the contact dies away [m]; where neither the curvature nor a foundation ends it,
+/// that of the larger curvature.
+double lengthOf(const Patch& patch, const Material& material, double foundation)
+{
+    const auto [most, least] = patch.principal;
+    const double perRoot     = std::pow(lengthRoot(material), -4); // [1/m^2] of a curvature of 1/m
+    const double ends =
+        (least / most > kOneWay ? perRoot * most * least : 0) + foundation / rigidityAtContact(patch); // [1/m^4]
+    return std::pow(ends > 0 ? ends : perRoot * most * most, -0.25);
 }
 
 /// Returns the noise of the points [m], the root of its mean square: one that changes little as points come and go.
@@ -160,12 +220,9 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
     const int       middle   = settings.cells / 2;
     const double    x = patch.curvature->x(middle, middle), z = patch.curvature->z(middle, middle),
                  xz   = patch.curvature->xz(middle, middle);
-    const double mean = (x + z) / 2, apart = std::hypot((x - z) / 2, xz);
-    patch.principal   = {mean + std::copysign(apart, mean), mean - std::copysign(apart, mean)};
-    const double felt = patch.principal.first * patch.principal.second > 0
-                            ? std::sqrt(patch.principal.first * patch.principal.second)
-                            : std::abs(patch.principal.first);
-    patch.shellLength = lengthRoot(material) / std::sqrt(felt);
+    patch.principal   = principalOf(x, z, xz);
+    patch.shellLength = lengthOf(patch, material, settings.foundation);
+    patch.sag         = sagOf(patch, object, points);
     cutOutCurvature(patch);
     if (const auto why = whyUnsolvable(shellOf(patch))) {
         patch.flatBecause = *why;

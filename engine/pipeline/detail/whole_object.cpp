@@ -20,6 +20,13 @@ double shareOf(double covered, double beyond)
     return beyond + (1 - beyond) * covered;
 }
 
+/// Returns how firmly a node is held [1]; nodes lose their hold over half the points' blur.
+double holdOf(double held)
+{
+    constexpr double kSharp = 2;
+    return std::clamp(0.5 + kSharp * (held - 0.5), 0.0, 1.0);
+}
+
 } // namespace
 
 bool isOnSheet(const Patch& patch, std::size_t node)
@@ -38,8 +45,11 @@ void cutOut(Patch& patch, double spacing, Theory theory)
 
 void cutOutMembrane(Patch& patch)
 {
+    constexpr double kFirm = 1000; // over the sheet's stiffness: what a ring of held nodes gives way is below 1 % [1]
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n)
         patch.membraneCompliance.values()[n] /= shareOf(patch.covered.values()[n], kVoidOfMembranes);
+    for (std::size_t n = 0; n < patch.held.values().size(); ++n)
+        patch.membraneCompliance.values()[n] /= 1 + (kFirm - 1) * holdOf(patch.held.values()[n]);
 }
 
 void cutOutCurvature(Patch& patch)
@@ -50,7 +60,7 @@ void cutOutCurvature(Patch& patch)
 
 void holdNodes(Patch& patch, const NodeField& held, double foundation)
 {
-    constexpr double kFirm = 1000, kSharp = 2; // D / cell^4; held nodes lose their hold over half the points' blur [1]
+    constexpr double kFirm = 1000; // D / cell^4 [1]
     Plate&           plate  = patch.plate;
     const NodeField  sheet  = sheetRigidity(patch);
     const double     cell   = std::max(plate.grid.spacingX, plate.grid.spacingZ);
@@ -60,12 +70,13 @@ void holdNodes(Patch& patch, const NodeField& held, double foundation)
     NodeField        shape(plate.grid);
     for (std::size_t n = 0; n < shape.values().size(); ++n) {
         const double below = foundation * (varies ? plate.foundationShape.values()[n] : 1);
-        const double hold  = std::clamp(0.5 + kSharp * (held.values()[n] - 0.5), 0.0, 1.0);
+        const double hold  = holdOf(held.values()[n]);
         shape.values()[n]  = below / firm + hold * plate.rigidity.values()[n] / most;
         patch.heldNodes += hold > 0.5 && isOnSheet(patch, n);
     }
     plate.foundation      = firm;
     plate.foundationShape = std::move(shape);
+    patch.held            = held;
 }
 
 void findSheared(Patch& patch, const NodeField& held)

@@ -14,7 +14,8 @@ namespace palp {
 /// \pre the plate's rigidity is that of the sheet, also beyond its border
 void cutOut(Patch& patch, double spacing, Theory theory);
 
-/// Does the same with the membrane, which gives way beyond the border.
+/// Does the same with the membrane, which gives way beyond the border, and where nodes are held hardly stretches: what
+/// surrounds a shell then stays where it is in its plane.
 /// \pre its compliance is that of the sheet, also beyond its border
 void cutOutMembrane(Patch& patch);
 
@@ -23,7 +24,7 @@ void cutOutMembrane(Patch& patch);
 void cutOutCurvature(Patch& patch);
 
 /// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are: with
-/// 1000 D / cell^4 a dent dies away within a fifth of a cell.
+/// 1000 D / cell^4 a dent dies away within a fifth of a cell. Fills in patch.held and patch.heldNodes.
 /// \param held        share of each node that is held [1], see SoftObject::withHeld
 /// \param foundation  of the scene [Pa/m]
 void holdNodes(Patch& patch, const NodeField& held, double foundation);
