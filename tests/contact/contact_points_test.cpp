@@ -2,9 +2,12 @@
 #include "engine/contact/detail/contact_points.h"
 
 #include <algorithm>
+#include <random>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "engine/contact/detail/surface_projector.h"
 #include "tests/contact/proxy_scenes.h"
 
 namespace palp {
@@ -46,6 +49,25 @@ TEST(ContactPoints, NoisyPointsAreSmoothed)
     const auto smoothed = std::ranges::count_if(touched.marks(), [](const PointMark& mark) { return mark.smoothed; });
     EXPECT_GT(smoothed, std::ptrdiff_t(touched.marks().size()) * 9 / 10)
         << "they have little noise, and planes know it";
+}
+
+/// Lengths are in scales of a touch.
+TEST(ContactPoints, ASheetBehindANoisyOneDoesNotPullItDown)
+{
+    std::mt19937_64                  random(1);
+    std::normal_distribution<>       noise(0, 1.0 / 11);
+    std::uniform_real_distribution<> side(-3, 3);
+    for (int run = 0; run < 20; ++run) {
+        SurfaceProjector projector;
+        for (const double height : {0.0, -2.0})
+            for (int k = 0; k < 400; ++k) {
+                const glm::dvec3 away(side(random), side(random), height + noise(random));
+                if (glm::length(away) < SurfaceProjector::reach(1)) projector.add(away);
+            }
+        const auto way = projector.wayToSurface(1);
+        ASSERT_TRUE(way) << run;
+        EXPECT_LT(glm::length(*way), 0.06) << "five times what 300 points leave of the noise; " << run;
+    }
 }
 
 } // namespace

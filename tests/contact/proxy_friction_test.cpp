@@ -78,5 +78,41 @@ TEST(ProxyFriction, SlidesWhenPulledBeyondTheConeAndSaysSo)
     EXPECT_TRUE(touch.state().slipping);
 }
 
+/// What a proxy slides beyond the hand's own way is a step of the force.
+TEST(ProxyFriction, SlidesAfterAHandAtRestByATenthOfItsDistancePerTick)
+{
+    for (const double depth : {2.0, 0.2}) {
+        Sheet sheet(Layout::lattice, 1);
+        Touch touch(sheet.over(-25, 25, -12, 12));
+        touch.start({-15, 0.3, 5});
+        touch.move({-15, 0.3, -depth}, 0.5);
+        touch.step({15, 0.3, -depth});
+        ASSERT_LT(touch.at().x, 0) << "no further than the iterations of a tick reach";
+        for (int tick = 0; tick < 100; ++tick) {
+            const glm::dvec3 before = touch.at(), pull = touch.hip() - before;
+            touch.step(touch.hip());
+            const double local = touch.state().spacing / kSpacing;
+            const double most  = std::clamp(0.1 * glm::length(pull), 0.05 * local, 0.5 * local);
+            EXPECT_NEAR(touch.at().x - before.x, std::min(pull.x, most), 1e-3) << tick;
+        }
+        EXPECT_NEAR(touch.at().x, 15, 0.01);
+    }
+}
+
+TEST(ProxyFriction, SticksAgainAfterAReset)
+{
+    for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere}) {
+        Touch touch = pressed(Layout::lattice, 0, 1, form);
+        touch.move({8, 0.3, -kDepth}, 0.1);
+        ASSERT_TRUE(touch.state().slipping);
+        // The sphere begins where it rests: of one that comes down the first points that it meets tilt the normal.
+        const glm::dvec3 from = touch.at() + glm::dvec3(0, 0, form == ProxyForm::sphere ? 0 : 1);
+        touch.start(from);
+        touch.step(from + kDepth * glm::dvec3(0.5 * (kHold + kSlip), 0, -1));
+        EXPECT_TRUE(touch.touching());
+        EXPECT_FALSE(touch.state().slipping) << "a tool that slides would slip here, one that is put down holds";
+    }
+}
+
 } // namespace
 } // namespace palp

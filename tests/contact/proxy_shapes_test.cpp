@@ -241,6 +241,24 @@ Points plate(Layout layout, std::uint64_t seed)
     return points;
 }
 
+/// The proxy looks for surfaces on its way, not only at the beginning of a tick.
+TEST(ProxyShapes, ASlideOfManySpacingsInATickEndsAtAWall)
+{
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Sheet  sheet(Layout::lattice, kFirstSeed + std::uint64_t(seed));
+        Points points = sheet.over(-15, 15, -15, 15); // the floor goes on behind the wall
+        for (const glm::dvec3& p : sheet.over(0, 15, -15, 15)) points.emplace_back(0, p.y, p.x);
+        Touch touch(points);
+        touch.start({8, 0.3, 5});
+        touch.move({8, 0.3, -3}, 0.5);
+        touch.step({-8, 0.3, -3});
+        EXPECT_TRUE(touch.touching());
+        EXPECT_GT(touch.at().x, -0.3) << "the wall was passed";
+        EXPECT_LT(touch.at().x, 3) << "the tick ended before";
+    }
+}
+
 // A position cannot but jump where the object is sharper than its points are close: a hand five deep beside an edge is
 // outside at once. The pull does not jump: a tenth of itself, and the way of the HIP (0.02 or 0.1 of the depth).
 TEST(ProxyShapes, OverASharpEdgeThePullDoesNotJump)

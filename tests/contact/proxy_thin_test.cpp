@@ -126,5 +126,24 @@ TEST(ProxyThin, AThinBodyIsSmooth)
     }
 }
 
+/// What a hand close over a sheet has seen holds nothing beyond its border: it would be a touch of no force, after which
+/// the proxy is where the hand is.
+TEST(ProxyThin, ASheetThatEndsHidesNoneBelow)
+{
+    for (int seed = 0; seed < kSeeds; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Sheet  sheet(Layout::random, kFirstSeed + std::uint64_t(seed));
+        Points points = sheet.over(-15, 0, -15, 15);
+        append(points, sheet.over(-15, 15, -15, 15), {0, 0, -4});
+        Touch touch(points);
+        touch.start({-5, 0.3, 5});
+        touch.move({-5, 0.3, 0.6}, 0.2);
+        touch.move({4, 0.3, 0.6}, 0.2, [&] { EXPECT_FALSE(touch.touching()); });
+        touch.step({4, 0.3, -8});
+        EXPECT_TRUE(touch.touching());
+        EXPECT_NEAR(touch.at().z, -4, 0.3);
+    }
+}
+
 } // namespace
 } // namespace palp

@@ -147,6 +147,33 @@ TEST(ProxyTravel, TheSameHandGivesTheSameBits)
     }
 }
 
+TEST(ProxyTravel, TheSameWayEndsAtASheetOfFinerPointsToo)
+{
+    for (const double finer : {1.0, 0.1, 0.01}) { // down to ten micrometres
+        Points points = smallSheets(Layout::random, 1, 0, 15);
+        for (glm::dvec3& p : points) p *= finer;
+        Touch touch(points);
+        touch.start(finer * glm::dvec3(0.2, 0.3, 30));
+        touch.step(finer * glm::dvec3(0.2, 0.3, -5));
+        EXPECT_TRUE(touch.touching()) << finer;
+        EXPECT_NEAR(touch.at().z / finer, 0, 0.3) << finer;
+    }
+}
+
+/// The pull follows by no more than the hand has moved, which is counted from the place of the reset.
+TEST(ProxyTravel, NothingOfAnEarlierTouchIsLeftAfterAReset)
+{
+    Touch touch(smallSheets(Layout::lattice, 1, 0, 15));
+    touch.start({0.2, 0.3, 5});
+    touch.move({0.2, 0.3, -3}, 0.5);
+    ASSERT_NEAR(touch.pull().z, 3, 0.01);
+    touch.start({0.2, 0.3, 1});
+    EXPECT_FALSE(touch.touching());
+    EXPECT_EQ(touch.pull(), glm::dvec3(0));
+    touch.step({0.2, 0.3, -3});
+    EXPECT_NEAR(touch.pull().z, 3, 0.01) << "the hand has moved by four";
+}
+
 TEST(ProxyTravel, NothingIsAllocatedAfterConstruction)
 {
     Sheet  sheet(Layout::random, 4);

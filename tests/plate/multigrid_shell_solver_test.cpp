@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/contract.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "tests/plate/shells.h"
@@ -242,6 +243,10 @@ TEST(MultigridShellSolver, ReportsWhatIsMissing)
         const ShellAnswer found = solved(shell, load, tolerance);
         EXPECT_LT(std::abs(found.work / exact - 1), tolerance * tolerance + 1e-9) << tolerance;
         EXPECT_LT(*found.report.errorEstimate, tolerance);
+        EXPECT_GT(found.report.setUpMilliseconds, 0);
+        const double ofStep = *found.report.workUnits / *found.report.iterations;
+        EXPECT_GT(ofStep, 10) << "a cycle of several sweeps, of rows that are longer than a plate's";
+        EXPECT_LT(ofStep, 100);
     }
 }
 
@@ -250,6 +255,11 @@ TEST(MultigridShellSolver, RefusesWhatCannotBeSolved)
     Shell shell                    = shellOf(square(16), even(), constant(1, 1, 0), 8);
     shell.membraneCompliance(3, 3) = -1;
     EXPECT_THROW(MultigridShellSolver{shell}, Error);
+    shell.membraneCompliance(3, 3) = shell.membraneCompliance(3, 4);
+    const NodeField load           = fingertip(square(16));
+    EXPECT_THROW((void)solved(shell, load, 0), ContractViolation) << "nothing is free of rounding";
+    EXPECT_THROW((void)solved(shell, load, 1e-3, 0), ContractViolation);
+    EXPECT_THROW((void)solved(shell, fingertip(square(17)), 1e-3), ContractViolation);
 }
 
 } // namespace
