@@ -359,13 +359,17 @@ std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Fr
                                              const CurvatureSettings& settings)
 {
     PALP_EXPECT(settings.spacing > 0, std::to_string(settings.spacing) + " m between the points");
-    const auto radius = radiusFor(window, frame, sites, settings);
-    if (!radius) return {};
-    const Lattice lattice = latticeBetween(window, kLattice, frame, sites, *radius);
-    if (lattice.empty()) return {};
-    CurvatureField field = interpolated(window, lattice);
-    field.radius         = *radius;
-    return field;
+    const auto wanted = radiusFor(window, frame, sites, settings);
+    if (!wanted) return {};
+    // Of what is hardly curved fits would be as wide as may be, and wider than a narrow object, which then decides nothing.
+    for (double radius = *wanted;; radius /= 2) {
+        const Lattice lattice = latticeBetween(window, kLattice, frame, sites, radius);
+        if (lattice.empty() && radius > kLeastSpacings * settings.spacing) continue;
+        if (lattice.empty()) return {};
+        CurvatureField field = interpolated(window, lattice);
+        field.radius         = radius;
+        return field;
+    }
 }
 
 } // namespace palp

@@ -113,6 +113,20 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }
 
+/// Says where a sheet is not thin, as all of these theories take it to be.
+void addThick(std::vector<std::string>& result, const Patch& patch)
+{
+    constexpr double kOfRadius = 0.1, kOfWindow = 0.25; // thickness over radius, and over what bends [1]
+    const double     h = patch.thickness, bent = bentSize(patch), curved = h * std::abs(patch.principal.first);
+    if (h > kOfWindow * bent)
+        result.push_back("the sheet is " + formatQuantity(h, "m") + " thick and only " + formatQuantity(bent, "m") +
+                         " of it bends: that is no thin sheet, and its answer is no more than a guess");
+    else if (curved > kOfRadius)
+        result.push_back("the sheet is " + withOneDecimal(100 * curved) +
+                         " % as thick as its radius of curvature is long, expected at most 10: the theory is that of "
+                         "thin shells");
+}
+
 /// Says where the deflection is beyond the theory: half the thickness, or twice it if large deflections are on.
 void addTooDeep(std::vector<std::string>& result, const Patch& patch, double deepest, double load)
 {
@@ -142,6 +156,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     const double load    = pressOf(patch, material, std::abs(force)).load;
     const double deepest = load * mostResponse(patch);
     addTooDeep(result, patch, deepest, load);
+    addThick(result, patch);
     const bool   whole  = settings.windowOf == WindowOf::object;
     const double window = patch.window.grid.sizeX(); // [m]
     if (patch.nodesWithoutPoint > 0 && !whole)

@@ -30,6 +30,9 @@ std::vector<glm::dvec3> placesOf(const JsonObject& object, std::string_view key)
 SceneHeld::Region regionOf(const JsonObject& object)
 {
     object.allowOnly({"box", "ball", "points", "radius"});
+    if (const int kinds = int(object.has("box")) + int(object.has("ball")) + int(object.has("points")); kinds != 1)
+        throw Error(object.where() + ": expected one of the keys box, ball and points, found " +
+                    (kinds == 0 ? "none" : std::to_string(kinds) + " of them; give each a region of its own"));
     if (object.has("box")) {
         object.allowOnly({"box"});
         SceneHeld::Region box{true, placesOf(object, "box"), 0};

@@ -1,6 +1,7 @@
 #include "engine/session/scene_keys.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include <nlohmann/json.hpp>
@@ -408,7 +409,9 @@ SceneKey windowKey(const Control& control)
         s.patch.windowOf = v.text == "object" ? WindowOf::object
                            : v.text == "auto" ? WindowOf::dent
                                               : WindowOf::contact;
-        if (s.patch.windowOf == WindowOf::contact) s.patch.window = v.number();
+        if (s.patch.windowOf != WindowOf::contact) return;
+        if (!v.text.empty() && std::isalpha(static_cast<unsigned char>(v.text.front()))) v.refuse();
+        s.patch.window = v.number();
     };
     key.write = [](const S& s) {
         return s.patch.windowOf == WindowOf::contact ? plainNumber(s.patch.window) : quotedJson(name(s.patch.windowOf));

@@ -388,6 +388,11 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     EXPECT_TRUE(says("too soft by up to 4 %", sagging(0.5, 51)));
     EXPECT_TRUE(says(("a --window of " + formatQuantity(20e-3, "m")).c_str(), sagging(0.5, 49)));
     EXPECT_TRUE(says("too soft by up to 100 %", sagging(0.5, 49)));
+    const auto thick = [](double h) { return [=](Patch& p) { p.thickness = h; }; };
+    EXPECT_FALSE(says("as thick as its radius", thick(4.9e-3))) << "R is 50 mm";
+    EXPECT_TRUE(says("is 10.2 % as thick as its radius", thick(5.1e-3)));
+    EXPECT_FALSE(says("no thin sheet", thick(9.9e-3)));
+    EXPECT_TRUE(says("no thin sheet", thick(10.1e-3))) << "beside a window of 40 mm";
     EXPECT_FALSE(says("folds", folded(0.49)));
     EXPECT_TRUE(says("folds", folded(0.51)));
     const auto wide = [&](Patch& p) { // how an object is held matters more there than the window does

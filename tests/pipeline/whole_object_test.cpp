@@ -281,6 +281,16 @@ TEST(WholeObject, SettingsSettleOnce)
     EXPECT_EQ(settledFor(strip, {}).window, PatchSettings{}.window);
 }
 
+TEST(WholeObject, AFlatStripOfAShellIsFlatWithoutAWordHoweverNarrow)
+{
+    PatchSettings settings = kWhole;
+    settings.theory        = Theory::shell;
+    const auto  narrow     = [](double x, double y) { return std::abs(x) < 30e-3 && std::abs(y) < 8e-3; };
+    const Patch strip      = touched(sheetOf(narrow, [](double x, double) { return x < -22e-3; }, 1, 0.7e-3), 20e-3, 0, settings);
+    EXPECT_FALSE(strip.curvature);
+    EXPECT_EQ(strip.flatBecause, "");
+}
+
 /// Felt with its rim fixed, and in brackets where the rim may slide in its plane: 14.54 (9.89) and 6.63 (4.25) N/m, by finite
 /// differences of Reissner's equations along the radius, in a program that is within 0.02 % of his point load where the rim
 /// is far away.

@@ -156,6 +156,16 @@ void printSamples(bool json)
     if (json) std::cout << jsonText(list);
 }
 
+/// Prints the keys of scenes: what each takes and means.
+void printKeys(bool asJson)
+{
+    if (!asJson) return void(std::cout << sceneKeyTable(&study::huntKeys()));
+    nlohmann::json keys = nlohmann::json::array();
+    for (const SceneKey* key : sceneKeysWith(&study::huntKeys()))
+        keys.push_back({{"key", key->name}, {"unit", key->unit}, {"takes", key->expected()}, {"means", key->help}});
+    std::cout << keys.dump(2) << '\n';
+}
+
 } // namespace
 
 void addInfoCommand(CLI::App& app)
@@ -179,7 +189,7 @@ void addInfoCommand(CLI::App& app)
                     "  palpate info --samples");
     command->callback([options, list, keys, schema] {
         if (*list) return printSamples(options->json);
-        if (*keys) return void(std::cout << sceneKeyTable(&study::huntKeys()));
+        if (*keys) return printKeys(options->json);
         if (*schema) return void(std::cout << sceneSchema(&study::huntKeys()));
         if (options->source.name.empty()) throw CLI::RequiredError("SCENE");
         printInfo(*options);

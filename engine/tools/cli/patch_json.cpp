@@ -1,5 +1,7 @@
 #include "engine/tools/cli/patch_json.h"
 
+#include <cmath>
+
 #include <algorithm>
 
 #include <nlohmann/json.hpp>
@@ -88,15 +90,17 @@ Json windowJson(const Patch& patch)
             {"nodes_held", patch.heldNodes}};
 }
 
-/// What a touch with a shell says of it; null without one.
+/// What a touch with a shell says of it, flat ones included; null without one.
 Json shellJson(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
-    if (!patch.curvature) return nullptr;
     const auto range = supportRange(patch, settings, solver);
+    if (!patch.curvature && !range) return nullptr;
+    const bool isEnded = patch.curvature && std::isfinite(patch.shellLength);
     return {{"curvatures", {patch.principal.first, patch.principal.second}},
-            {"fit_radius", patch.curvature->radius},
-            {"length", patch.shellLength},
-            {"window_lengths", patch.window.grid.sizeX() / patch.shellLength},
+            {"flat", !patch.curvature},
+            {"fit_radius", patch.curvature ? Json(patch.curvature->radius) : Json()},
+            {"length", isEnded ? Json(patch.shellLength) : Json()},
+            {"window_lengths", isEnded ? Json(bentSize(patch) / patch.shellLength) : Json()},
             {"felt_stiffness_supported", orNull(range ? std::optional(range->supported) : std::nullopt)},
             {"felt_stiffness_clamped", orNull(range ? std::optional(range->clamped) : std::nullopt)},
             {"edges", edgesText(settings.edges)}};

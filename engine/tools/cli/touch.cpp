@@ -70,9 +70,14 @@ void printWindow(const nlohmann::json& window)
 void printShell(const nlohmann::json& shell)
 {
     const auto quantity = [](const nlohmann::json& number, const char* unit) { return formatQuantity(number, unit); };
-    std::printf("  shell              curvatures %s and %s, window %.1f lengths of %s",
-                quantity(shell["curvatures"][0], "1/m").c_str(), quantity(shell["curvatures"][1], "1/m").c_str(),
-                shell["window_lengths"].get<double>(), quantity(shell["length"], "m").c_str());
+    if (shell["flat"].get<bool>())
+        std::printf("  shell              flat here, bent as a plate");
+    else
+        std::printf("  shell              curvatures %s and %s", quantity(shell["curvatures"][0], "1/m").c_str(),
+                    quantity(shell["curvatures"][1], "1/m").c_str());
+    if (!shell["length"].is_null())
+        std::printf(", window %.1f lengths of %s", shell["window_lengths"].get<double>(),
+                    quantity(shell["length"], "m").c_str());
     if (!shell["felt_stiffness_supported"].is_null())
         std::printf(", felt %s with supported and %s with clamped edges; the answer is that of the scene's: %s",
                     quantity(shell["felt_stiffness_supported"], "N/m").c_str(),
