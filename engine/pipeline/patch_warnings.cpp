@@ -81,7 +81,7 @@ double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const 
 void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings,
                   const Material& material)
 {
-    constexpr double kFolded = 0.5, kNearly = 0.95, kFelt = 0.2; // [1]
+    constexpr double kFolded = 0.5, kNearly = 0.95, kFelt = 0.2, kHardly = 0.02; // [1]
     if (settings.theory == Theory::plate && settings.neighbourhood == Neighbourhood::surface &&
         membraneLeftOut(patch, settings, material) > kFelt)
         result.push_back(
@@ -103,8 +103,10 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                          ", or object, with what holds it, where the object is smaller");
     else if (!whole && !ends)
         result.push_back(
-            "the surface is curved " +
-            std::string(least / most < -kOneWay ? "both ways against each other" : "one way") +
+            "the surface is " +
+            std::string(std::abs(most) * window < kHardly        ? "hardly curved"
+                        : least / most < -kOneWay ? "curved both ways against each other"
+                                                  : "curved one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
     constexpr double kShown = 0.005; // half of what is printed of a sag is no excess [1]

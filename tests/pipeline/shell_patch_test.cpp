@@ -377,6 +377,7 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     EXPECT_TRUE(says("curved one way", curved(20, 1.9)));
     EXPECT_TRUE(says("curved one way", curved(-20, 1.9)));
     EXPECT_TRUE(says("both ways against each other", curved(20, -2.1)));
+    EXPECT_TRUE(says("the surface is hardly curved here", curved(0, 0)));
     const auto sagging = [](double sag, double least) {
         return [=](Patch& p) {
             p.sag       = sag;

@@ -32,7 +32,8 @@ Json jsonOf(const std::optional<MultigridPlateSolver::CommandCounts>& c)
             {"prepare_copies", c->prepareCopies},
             {"nested_iteration", c->nested},
             {"step", c->step},
-            {"cycle", c->cycle}};
+            {"cycle", c->cycle},
+            {"after_steps", c->last}};
 }
 
 Json jsonOf(const BenchRow& r)

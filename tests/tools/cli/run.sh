@@ -185,7 +185,7 @@ alone/palpate bench --solver lavapipe --nodes 33 --cases memory >out.txt 2>err.t
 holds 'install libsuitesparse-dev'
 
 good 'counts of dispatches' bench --solver lavapipe --nodes 65 --cases dispatches --json
-for key in '"case": "dispatches"' '"schedule": "fused"' '"nested_iteration": 15' '"step": 4' '"step": 30'; do holds "$key"; done
+for key in '"case": "dispatches"' '"schedule": "fused"' '"nested_iteration": 4' '"step": 4' '"after_steps": 0' '"step": 30'; do holds "$key"; done
 
 good 'list of devices' devices
 holds 'host  '
