@@ -8,7 +8,8 @@ namespace palp::shared {
 
 const int kRegion      = 48; // nodes along either side; even
 const int kRimPerSweep = 4;  // nodes along each side that others own: two per half sweep
-const int kGathered    = 4;  // nodes on either side of a coarse one from which its force is gathered, see transfer_table.cpp
+const int kGathered =
+    4; // nodes on either side of a coarse one from which its force is gathered, see transfer_table.cpp
 
 #ifdef __cplusplus
 } // namespace palp::shared

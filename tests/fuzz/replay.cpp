@@ -81,8 +81,8 @@ public:
         const std::size_t before = live;
         peak                     = before;
         harness_.run(bytes.data(), bytes.size());
-        const std::size_t taken = peak - before;
-        most_                   = std::max(most_, taken);
+        const std::size_t taken   = peak - before;
+        most_                     = std::max(most_, taken);
         const std::string name    = harness_.name;
         const std::size_t beside  = name == "capi" ? kMostOfInterface : kMostBeside;
         const std::size_t perByte = name == "glb" ? kMostPerByteOfGlb : kMostPerByte;
@@ -160,7 +160,9 @@ bool isLinear(const char* shorts, const char* longs)
         std::printf("%-10s %8zu bytes in %9.3f ms, %8zu in %9.3f ms: %5.1f times, at most %4zu KiB of memory%s\n",
                     harness.name, few.size(), 1e3 * brief, many.size(), 1e3 * lasting, lasting / brief,
                     replay.most() >> 10U,
-                    !read ? ": FAILED: it was not read" : linear ? "" : ": FAILED: more than in proportion");
+                    !read    ? ": FAILED: it was not read"
+                    : linear ? ""
+                             : ": FAILED: more than in proportion");
         good = good && read && linear;
     }
     return good;
@@ -194,14 +196,14 @@ int main(int count, char** arguments)
     if (count == 4 && std::string(arguments[1]) == "--linear") return isLinear(arguments[2], arguments[3]) ? 0 : 1;
     bool failed = false;
     for (const Named& harness : kHarnesses) {
-        Replay      replay(harness);
-        std::size_t seeds = 0;
+        Replay             replay(harness);
+        std::size_t        seeds = 0;
         palp::FuzzVerdicts wholes; // on seeds as they are
         for (int n = 1; n < count; ++n) {
             const auto folder = std::filesystem::path(arguments[n]) / harness.name;
             if (!std::filesystem::is_directory(folder)) continue;
             for (const auto& file : std::filesystem::directory_iterator(folder)) {
-                const auto bytes = contentsOf(file.path());
+                const auto bytes   = contentsOf(file.path());
                 palp::fuzzVerdicts = {};
                 replay.whole(bytes);
                 wholes.accepted += palp::fuzzVerdicts.accepted;

@@ -244,7 +244,8 @@ TEST(CalculixShells, ADishBendsAboutItsStemAsAShell)
     for (const CalculixShell& of : kCalculixShells) {
         if (!of.name.ends_with("dish")) continue;
         const double felt = feltBy(Theory::shell, Edge::clamped, of) / of.stiffness - 1;
-        EXPECT_NEAR(felt, 0, 0.04) << of.name << ": measured -2.8 and -0.3 %, and -4.0 and -2.9 where the stem stretched";
+        EXPECT_NEAR(felt, 0, 0.04) << of.name
+                                   << ": measured -2.8 and -0.3 %, and -4.0 and -2.9 where the stem stretched";
         EXPECT_LT(feltBy(Theory::plate, Edge::clamped, of) / of.stiffness, 0.85)
             << of.name << ": then nothing is shown";
     }

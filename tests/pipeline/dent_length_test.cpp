@@ -109,7 +109,7 @@ TEST(DentLength, DecidesTheWindowIfTheSettingsSaySo)
 
 TEST(DentLength, OfATubeIsUnknownHoweverItsPointsAreDrawn)
 {
-    constexpr double kRadius = 10e-3;
+    constexpr double kRadius  = 10e-3;
     PatchSettings    settings = shell();
     settings.windowOf         = WindowOf::dent;
     for (unsigned seed = 1; seed <= 5; ++seed) { // fits see 0.001 to 0.04 1/m along it, of either sign
@@ -120,9 +120,11 @@ TEST(DentLength, OfATubeIsUnknownHoweverItsPointsAreDrawn)
             const double t = turn(random);
             points.emplace_back(along(random), kRadius * std::cos(t), kRadius * std::sin(t));
         }
-        const SoftObject tube(PointCloud(std::move(points), std::vector<double>(40000, 1e6), StiffnessKind::modulus), kSheet);
+        const SoftObject tube(PointCloud(std::move(points), std::vector<double>(40000, 1e6), StiffnessKind::modulus),
+                              kSheet);
         EXPECT_FALSE(dentLengths(tube, settings)) << seed;
-        EXPECT_NEAR(settledFor(tube, settings).window, 2 * kRadius, 0.15 * kRadius) << "what sags a quarter of its width";
+        EXPECT_NEAR(settledFor(tube, settings).window, 2 * kRadius, 0.15 * kRadius)
+            << "what sags a quarter of its width";
     }
 }
 
@@ -133,7 +135,8 @@ TEST(DentLength, NoWindowIsWiderThanTheObject)
     const auto windowOf    = [&](double radius) {
         return settledFor(sheet([=](double x, double y) { return -(x * x + y * y) / (2 * radius); }), settings).window;
     };
-    EXPECT_NEAR(windowOf(0.2) / lengthOf(0.2), 8, 0.6) << "62 mm fit on 100 mm; a paraboloid bends less away from its middle";
+    EXPECT_NEAR(windowOf(0.2) / lengthOf(0.2), 8, 0.6)
+        << "62 mm fit on 100 mm; a paraboloid bends less away from its middle";
     for (const double radius : {1.0, 2.0, 10.0}) {
         EXPECT_GT(windowOf(radius), 70e-3) << radius;
         EXPECT_LT(windowOf(radius), 100e-3) << radius;

@@ -311,11 +311,11 @@ TEST(ShellPatch, SagsAsTheSurfaceDoesAcrossTheWindowNotAsItBendsAtOnePlace)
 
 TEST(ShellPatch, OnAFoundationADentsLengthIsThatOfBoth)
 {
-    const SoftObject dome   = ellipsoid(glm::dvec3(50e-3), 0);
-    PatchSettings    on     = kShell;
-    const double     bare   = touchOf(dome, {0, 0, 50e-3}).shellLength;
-    on.foundation           = kSkin.rigidity(kModulus) / std::pow(bare, 4); // as stiff as the membrane
-    const Patch both        = touchOf(dome, {0, 0, 50e-3}, on);
+    const SoftObject dome = ellipsoid(glm::dvec3(50e-3), 0);
+    PatchSettings    on   = kShell;
+    const double     bare = touchOf(dome, {0, 0, 50e-3}).shellLength;
+    on.foundation         = kSkin.rigidity(kModulus) / std::pow(bare, 4); // as stiff as the membrane
+    const Patch both      = touchOf(dome, {0, 0, 50e-3}, on);
     EXPECT_NEAR(both.shellLength / bare, std::pow(0.5, 0.25), 0.01);
     on.foundation *= 100;
     on.window = 12e-3; // 8.6 of its lengths, 2.7 of the bare shell's
@@ -333,7 +333,8 @@ TEST(ShellPatch, OfWhatIsFlatTheRangeBetweenSupportsIsToldToo)
     const auto  range = supportRange(patch, kShell, host);
     ASSERT_TRUE(range);
     EXPECT_NEAR(range->supported / patch.feltStiffness, 1, 1e-3) << "its own edges";
-    EXPECT_NEAR(range->clamped / range->supported, 0.01160 / 0.00560, 0.1) << "Timoshenko, square plates under a point load";
+    EXPECT_NEAR(range->clamped / range->supported, 0.01160 / 0.00560, 0.1)
+        << "Timoshenko, square plates under a point load";
     EXPECT_FALSE(supportRange(patch, asPlate(), host)) << "a plate's edges are what the scene says";
 }
 

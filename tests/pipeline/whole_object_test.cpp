@@ -286,7 +286,9 @@ TEST(WholeObject, AFlatStripOfAShellIsFlatWithoutAWordHoweverNarrow)
     PatchSettings settings = kWhole;
     settings.theory        = Theory::shell;
     const auto  narrow     = [](double x, double y) { return std::abs(x) < 30e-3 && std::abs(y) < 8e-3; };
-    const Patch strip      = touched(sheetOf(narrow, [](double x, double) { return x < -22e-3; }, 1, 0.7e-3), 20e-3, 0, settings);
+    const Patch strip      = touched(sheetOf(
+                                         narrow, [](double x, double) { return x < -22e-3; }, 1, 0.7e-3),
+                                     20e-3, 0, settings);
     EXPECT_FALSE(strip.curvature);
     EXPECT_EQ(strip.flatBecause, "");
 }
@@ -309,9 +311,10 @@ TEST(WholeObject, ADomeThatIsHeldAtItsRimIsHeldInItsPlaneToo)
             points.emplace_back(r * std::cos(turn), r * std::sin(turn), std::sqrt(radius * radius - r * r) - radius);
             shares.push_back(r > 40e-3 ? 1 : 0);
         }
-        const auto dome = SoftObject(PointCloud(std::move(points), std::vector<double>(kCount, 1e6), StiffnessKind::modulus),
-                                     material)
-                              .withHeld(std::move(shares));
+        const auto dome =
+            SoftObject(PointCloud(std::move(points), std::vector<double>(kCount, 1e6), StiffnessKind::modulus),
+                       material)
+                .withHeld(std::move(shares));
         EXPECT_NEAR(touched(dome, 0, 0, settings).feltStiffness / truth, 1, 0.02)
             << radius << " m: what is held is found to half a cell";
     }

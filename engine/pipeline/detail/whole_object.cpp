@@ -60,7 +60,7 @@ void cutOutCurvature(Patch& patch)
 
 void holdNodes(Patch& patch, const NodeField& held, double foundation)
 {
-    constexpr double kFirm = 1000; // D / cell^4 [1]
+    constexpr double kFirm  = 1000; // D / cell^4 [1]
     Plate&           plate  = patch.plate;
     const NodeField  sheet  = sheetRigidity(patch);
     const double     cell   = std::max(plate.grid.spacingX, plate.grid.spacingZ);

@@ -49,7 +49,7 @@ using Clock = std::chrono::steady_clock;
 /// Steps of a list: what a list has left when the solve is finished runs empty, which costs hardware a microsecond for each
 /// dispatch. The shortest one that holds the steps of the last solve is run; the answer is the same whichever it is.
 constexpr std::array kStepsOfLists{1, 2, 4};
-constexpr int kMostGroups   = 65535; ///< along x of a dispatch, on every processor
+constexpr int        kMostGroups = 65535; ///< along x of a dispatch, on every processor
 
 constexpr double kRounding = 1e-7; ///< error of rigidities and answer in floats, twice 6e-8 rounded [1]
 
@@ -110,10 +110,10 @@ struct MultigridPlateSolver::Impl {
     /// The lists of a solve, recorded when they are first needed.
     struct Lists {
         std::array<std::optional<CommandList>, kStepsOfLists.size()> begin, resume; ///< by their steps
-        int                        dispatchesPerCycle = 0;
-        int                        nestedDispatches = 0, stepDispatches = 0, lastDispatches = 0;
-        PlateWork                  nestedWork, stepsWork; ///< before the steps on the finest level; the steps
-        int                        steps = 0; ///< of which stepsWork is
+        int                                                          dispatchesPerCycle = 0;
+        int       nestedDispatches = 0, stepDispatches = 0, lastDispatches = 0;
+        PlateWork nestedWork, stepsWork; ///< before the steps on the finest level; the steps
+        int       steps = 0;             ///< of which stepsWork is
     };
     /// Memory for loads on few nodes: what the host writes and reads.
     struct FootprintBuffers {
@@ -131,8 +131,8 @@ struct MultigridPlateSolver::Impl {
     std::vector<double>             works;      ///< of a unit of each load along a unit of its deflection [N m]
 
     std::optional<CommandList> prepareList;
-    std::array<Lists, 4>       lists;               ///< by how the rigidity jumps
-    Jumps                      jumps = Jumps::none; ///< chooses among them
+    std::array<Lists, 4>       lists;                            ///< by how the rigidity jumps
+    Jumps                      jumps     = Jumps::none;          ///< chooses among them
     int                        lastSteps = kStepsOfLists.back(); ///< of the last solve
 
     Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
@@ -448,7 +448,7 @@ struct MultigridPlateSolver::Impl {
     {
         constexpr int         kBeyond = 2; // steps that are tried where it takes more than the last solve did
         CommandList*          list    = &run(&Lists::begin, &Impl::recordBegin, lastSteps);
-        int                   done                  = int(worst(shared::kStateSteps));
+        int                   done    = int(worst(shared::kStateSteps));
         std::optional<double> processorMilliseconds = 0;
         for (;;) {
             const auto times = list->timestampsMilliseconds();
@@ -555,8 +555,12 @@ MultigridPlateSolver::CommandCounts MultigridPlateSolver::commands()
 {
     Impl::Lists& now = impl_->lists[std::size_t(impl_->jumps)];
     if (!now.begin.back()) now.begin.back().emplace(impl_->recordBegin(kStepsOfLists.back()));
-    return {impl_->prepareList->dispatches(), impl_->prepareList->copies(), now.nestedDispatches, now.stepDispatches,
-            now.dispatchesPerCycle, now.lastDispatches};
+    return {impl_->prepareList->dispatches(),
+            impl_->prepareList->copies(),
+            now.nestedDispatches,
+            now.stepDispatches,
+            now.dispatchesPerCycle,
+            now.lastDispatches};
 }
 
 int MultigridPlateSolver::dispatchesPerCycle() const noexcept

@@ -137,15 +137,16 @@ TEST_F(CgFusedTest, FinishingIsTheUpdateOfTheLastStepWhereverItsNumbersAre)
         using Real = decltype(number);
         const compute::Kernel   finish(context(), kernels::finish<Real>(), {64, 1, 1});
         const std::size_t       count = std::size_t(kLoads) * kNodes;
-        const std::vector<Real> p[2] = {roughValues<Real>(count, 51), roughValues<Real>(count, 52)},
-                                q = roughValues<Real>(count, 53);
+        const std::vector<Real> p[2]  = {roughValues<Real>(count, 51), roughValues<Real>(count, 52)},
+                                q     = roughValues<Real>(count, 53);
         for (const int steps : {1, 2, 3, 4}) {
             SCOPED_TRACE(std::to_string(steps) + " steps");
-            const bool        odd = steps % 2 == 1;
+            const bool        odd   = steps % 2 == 1;
             std::vector<Real> state = roughState<Real>(54), x = roughValues<Real>(count, 55),
-                              r = roughValues<Real>(count, 56);
+                              r           = roughValues<Real>(count, 56);
             const std::vector<Real> other = roughValues<Real>(count, 57);
-            for (int load = 0; load < kLoads; ++load) state[std::size_t(load * kStateWords + kStateSteps)] = Real(steps);
+            for (int load = 0; load < kLoads; ++load)
+                state[std::size_t(load * kStateWords + kStateSteps)] = Real(steps);
             std::vector<Real> wantedX = x, wantedR = odd ? r : other;
             for (std::size_t n = 0; n < count; ++n) {
                 const Real alpha = state[n / kNodes * kStateWords + std::size_t(kStateAlpha)];
@@ -154,7 +155,8 @@ TEST_F(CgFusedTest, FinishingIsTheUpdateOfTheLastStepWhereverItsNumbersAre)
             }
             std::vector<float> rounded(count), wantedRounded(wantedR.begin(), wantedR.end());
             std::vector<Real>  first = p[0];
-            dispatchOnce(finish, {in(state), inOut(first), in(p[1]), in(q), inOut(x), inOut(r), in(other), out(rounded)},
+            dispatchOnce(finish,
+                         {in(state), inOut(first), in(p[1]), in(q), inOut(x), inOut(r), in(other), out(rounded)},
                          VectorPush{kNodes, 0, 0}, finish.groupsOver(kNodes, 1, kLoads));
             EXPECT_EQ(first, p[odd ? 1 : 0]) << "the direction after which the next list begins";
             EXPECT_TRUE(agree(x, wantedX, ownSizes(wantedX), kFusedRounding));

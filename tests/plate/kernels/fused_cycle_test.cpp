@@ -89,7 +89,7 @@ struct Levels {
         const RoughLevel&  level = levels[top];
         std::vector<float> x =
             host::interpolated(pair(top), nested(top + 1, host::restricted(pair(top), load), inverse, 1, lanes));
-        std::vector<float> r = host::residual(level.g, level.rigidity, load, x), p(x.size(), 0.0F);
+        std::vector<float> r      = host::residual(level.g, level.rigidity, load, x), p(x.size(), 0.0F);
         float              lastRz = 0;
         for (int step = 0; step < steps; ++step) {
             const auto  z    = cycle(top, r, inverse, shared::kNestedSweeps);
@@ -232,16 +232,16 @@ TEST_F(FusedCycleTest, TheWayDownTakesTheLastStepFirst)
     if (onHost()) GTEST_SKIP() << "the host has no such kernel";
     if (isSlow()) GTEST_SKIP() << "time";
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real                 = decltype(number);
         const compute::Kernel down = kernelOf(kernels::downUpdating<Real>(), {256, 1, 1}, kFinestSweeps);
         for (const Plate& plate : regionPlates()) {
             SCOPED_TRACE(describe(plate));
             const RoughLevel        level(plate);
-            const LevelPair         pair = pairsBelow(plate).front();
+            const LevelPair         pair  = pairsBelow(plate).front();
             const std::size_t       nodes = nodesOf(level.g), count = kLoads * nodes;
             const std::vector<Real> p = roughValues<Real>(count, 91), q = roughValues<Real>(count, 92),
-                                    r = roughValues<Real>(count, 93), state = roughValues<Real>(
-                                        kLoads * std::size_t(shared::kStateWords), 94);
+                                    r     = roughValues<Real>(count, 93),
+                                    state = roughValues<Real>(kLoads * std::size_t(shared::kStateWords), 94);
             std::vector<Real>  x = roughValues<Real>(count, 95), newX = x, rest = r;
             std::vector<float> force(count);
             for (std::size_t n = 0; n < count; ++n) {
@@ -250,21 +250,22 @@ TEST_F(FusedCycleTest, TheWayDownTakesTheLastStepFirst)
                 rest[n] -= alpha * q[n];
                 force[n] = float(rest[n]);
             }
-            const auto w     = swept(level, std::vector<float>(count, 0.0F), force, 0, kFinestSweeps);
-            const auto below = host::restricted(pair, host::residual(level.g, level.rigidity, force, w));
+            const auto         w     = swept(level, std::vector<float>(count, 0.0F), force, 0, kFinestSweeps);
+            const auto         below = host::restricted(pair, host::residual(level.g, level.rigidity, force, w));
             std::vector<float> measuredW(count), measuredForce(count), measuredBelow(below.size());
             std::vector<Real>  measuredRest(count);
             dispatchOnce(down,
                          {in(level.rigidity), in(host::inverseDivisor(level.g, level.rigidity)), in(pair.tableX),
                           in(pair.tableZ), out(measuredW), out(measuredBelow), out(measuredForce), in(state), in(p),
                           in(q), in(r), out(measuredRest), inOut(x)},
-                         shared::TransferPush{level.g, pair.coarse}, regionsOf(level.g, kFinestSweeps, shared::kGathered));
+                         shared::TransferPush{level.g, pair.coarse},
+                         regionsOf(level.g, kFinestSweeps, shared::kGathered));
             EXPECT_TRUE(agree(x, newX, std::vector<double>(count, 1), kFusedRounding));
             EXPECT_TRUE(agree(measuredRest, rest, std::vector<double>(count, 1), kFusedRounding));
             EXPECT_TRUE(agree(measuredForce, force, std::vector<double>(count, 1), kFusedRounding));
             EXPECT_TRUE(agree(measuredW, w, sizesOf(w), kCycleRounding));
-            EXPECT_TRUE(agree(measuredBelow, below, gatheredSizes(operatorSizes(level, w), below.size()),
-                              kCycleRounding));
+            EXPECT_TRUE(
+                agree(measuredBelow, below, gatheredSizes(operatorSizes(level, w), below.size()), kCycleRounding));
         }
     });
 }
@@ -274,23 +275,23 @@ TEST_F(FusedCycleTest, TheWayUpAims)
     if (onHost()) GTEST_SKIP() << "the host has no such kernel";
     if (isSlow()) GTEST_SKIP() << "time";
     inEachPrecision([](auto number) {
-        using Real = decltype(number);
+        using Real               = decltype(number);
         const compute::Kernel up = kernelOf(kernels::upAiming<Real>(), {256, 1, 1}, kFinestSweeps);
         for (const Plate& plate : regionPlates())
             for (const std::uint32_t begins : {0U, 2U}) {
                 SCOPED_TRACE(describe(plate));
                 const RoughLevel  level(plate);
-                const LevelPair   pair = pairsBelow(plate).front();
+                const LevelPair   pair  = pairsBelow(plate).front();
                 const std::size_t nodes = nodesOf(level.g), count = kLoads * nodes;
                 const auto        force = roughValues<float>(count, 32), f = roughValues<float>(count, 96);
                 const auto        before = roughDeflection<float>(level.g, kLoads, 33);
                 const auto        coarse = roughValues<float>(kLoads * nodesOf(pair.coarse), 34);
                 const auto        r = roughValues<Real>(count, 97), x = roughValues<Real>(count, 98);
-                const auto        z = swept(level, sum(before, host::interpolated(pair, coarse)), force, 1, kFinestSweeps);
+                const auto z = swept(level, sum(before, host::interpolated(pair, coarse)), force, 1, kFinestSweeps);
                 std::vector<Real> state = roughValues<Real>(kLoads * std::size_t(shared::kStateWords), 99);
                 for (Real& word : state) word = Real(0.5) + std::abs(word);
-                const compute::Groups groups = regionsOf(level.g, kFinestSweeps, 0);
-                constexpr int         kOwned = shared::kRegion - 2 * kFinestSweeps * shared::kRimPerSweep;
+                const compute::Groups groups   = regionsOf(level.g, kFinestSweeps, 0);
+                constexpr int         kOwned   = shared::kRegion - 2 * kFinestSweeps * shared::kRimPerSweep;
                 std::vector<Real>     expected = state, sums; // as host::beta() takes them: of (r, z), then of (f, x)
                 for (std::size_t load = 0; load < kLoads; ++load)
                     for (const bool ofLoad : {false, true})
@@ -354,20 +355,23 @@ TEST_F(FusedCycleTest, SweepsTogetherAreThoseOneByOneEverywhereOrInTiles)
             for (const bool tilesOnly : {false, true}) {
                 const unsigned first = tilesOnly ? 0 : 1;
                 SCOPED_TRACE(describe(plate) + ", sweeps: " + std::to_string(sweeps));
-                const RoughLevel   level(plate);
-                const std::size_t  nodes = nodesOf(level.g), stride = std::size_t(level.g.cellsZ) + 1;
-                const auto         force   = roughValues<float>(kLoads * nodes, 41);
-                const auto         before  = roughDeflection<float>(level.g, kLoads, 42);
-                const auto         inverse = host::inverseDivisor(level.g, level.rigidity);
-                const auto         chosen  = roughValues<float>(std::size_t(shared::tilesX(level.g) * shared::tilesZ(level.g)), 43);
+                const RoughLevel  level(plate);
+                const std::size_t nodes = nodesOf(level.g), stride = std::size_t(level.g.cellsZ) + 1;
+                const auto        force   = roughValues<float>(kLoads * nodes, 41);
+                const auto        before  = roughDeflection<float>(level.g, kLoads, 42);
+                const auto        inverse = host::inverseDivisor(level.g, level.rigidity);
+                const auto        chosen =
+                    roughValues<float>(std::size_t(shared::tilesX(level.g) * shared::tilesZ(level.g)), 43);
                 std::vector<std::uint32_t> marks(chosen.size());
                 std::ranges::transform(chosen, marks.begin(), [](float value) { return value > 0 ? 1U : 0U; });
                 std::vector<float> w = before;
                 for (int n = 0; n < 2 * sweeps; ++n) {
                     const auto next = host::relaxed(level, {inverse, force, w, w, w}, (first + unsigned(n)) % 2);
                     for (std::size_t at = 0; at < w.size(); ++at) {
-                        const int tileI = int(at % nodes / stride) / shared::kTile, tileJ = int(at % nodes % stride) / shared::kTile;
-                        if (!tilesOnly || marks[std::size_t(tileI * shared::tilesZ(level.g) + tileJ)] == 1) w[at] = next[at];
+                        const int tileI = int(at % nodes / stride) / shared::kTile,
+                                  tileJ = int(at % nodes % stride) / shared::kTile;
+                        if (!tilesOnly || marks[std::size_t(tileI * shared::tilesZ(level.g) + tileJ)] == 1)
+                            w[at] = next[at];
                     }
                 }
                 std::vector<float> measured(w.size());
@@ -439,12 +443,14 @@ TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
             for (std::size_t l = 0; l < levels.levels.size(); ++l) {
                 const RoughLevel& level = levels.levels[l];
                 std::ranges::copy(level.rigidity, rigidity.begin() + tail.levels[l].field);
-                std::ranges::copy(host::inverseDivisor(level.g, level.rigidity), divisor.begin() + tail.levels[l].field);
+                std::ranges::copy(host::inverseDivisor(level.g, level.rigidity),
+                                  divisor.begin() + tail.levels[l].field);
             }
             const std::size_t              coarsest = nodesOf(levels.levels.back().g);
             std::vector<shared::FloatPair> inverse  = roughPairs(coarsest * coarsest, 35);
             for (std::size_t n = 0; n < inverse.size(); ++n)
-                inverse[n] = n % (coarsest + 1) == 0 ? shared::FloatPair{1, 0} : shared::FloatPair{inverse[n].high / 64, 0};
+                inverse[n] =
+                    n % (coarsest + 1) == 0 ? shared::FloatPair{1, 0} : shared::FloatPair{inverse[n].high / 64, 0};
             for (std::size_t top = 0; top < levels.levels.size(); ++top)
                 for (const int steps : {1, 2}) {
                     SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", from level " + std::to_string(top) +
@@ -453,10 +459,11 @@ TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
                     const auto         load  = roughValues<float>(kLoads * nodes, 37);
                     std::vector<float> expected;
                     for (auto from = load.begin(); from != load.end(); from += std::ptrdiff_t(nodes)) {
-                        const auto one = levels.nested(top, {from, from + std::ptrdiff_t(nodes)}, inverse, steps, shape.x);
+                        const auto one =
+                            levels.nested(top, {from, from + std::ptrdiff_t(nodes)}, inverse, steps, shape.x);
                         expected.insert(expected.end(), one.begin(), one.end());
                     }
-                    std::vector<float> measured(expected.size());
+                    std::vector<float>              measured(expected.size());
                     std::vector<std::vector<float>> fields(5, std::vector<float>(kLoads * tail.nodes, 0.0F));
                     dispatchTwice(kernel,
                                   {in(tail.levels), in(rigidity), in(divisor), in(tail.tablesX), in(tail.tablesZ),

@@ -358,13 +358,12 @@ TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
         EXPECT_EQ(MultigridPlateSolver(context(), onePassEach, plate, {}).commands().step, row.step) << row.cells;
     }
     // Three dispatches of two extra sweeps on either way through a level: 11 for each of three levels, and the coarsest.
-    const auto  laws = std::ranges::find_if(kLaws, [](const Law& law) { return !law.smooth; });
-    const Plate disc = plateOf(128, 128, {}, *laws);
+    const auto  laws  = std::ranges::find_if(kLaws, [](const Law& law) { return !law.smooth; });
+    const Plate disc  = plateOf(128, 128, {}, *laws);
     const auto  sharp = MultigridPlateSolver(context(), fused, disc, {}).commands();
     EXPECT_EQ(sharp.cycle, 34) << laws->name;
     EXPECT_EQ(sharp.step, 41) << laws->name << ": the step itself has the bits, and the dispatches, of single passes";
     EXPECT_GT(MultigridPlateSolver(context(), onePassEach, disc, {}).commands().cycle, 5 * sharp.cycle);
-
 }
 
 /// The goal of engine/performance.md. Conjugate gradients on all levels share the memory of the finest one's; each level

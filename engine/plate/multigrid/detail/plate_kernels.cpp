@@ -53,7 +53,8 @@ Smoother chosen(Smoother smoother, Schedule schedule, const compute::Context& co
 Smoothing smoothingBy(Smoother smoother)
 {
     if (smoother == Smoother::exactRims) smoother = Smoother::chebyshev;
-    return smoother == Smoother::redBlack ? Smoothing{smoother, shared::kNestedSweeps, 2, 6, 16} : Smoothing{smoother, 2, 2, 2, 16};
+    return smoother == Smoother::redBlack ? Smoothing{smoother, shared::kNestedSweeps, 2, 6, 16}
+                                          : Smoothing{smoother, 2, 2, 2, 16};
 }
 
 /// Chooses the schedule. Fused passes compute the rims of regions several times, which pays where waiting for a
@@ -65,8 +66,8 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
         throw Error("the host has no fused passes: they spare dispatches, of which it has none");
     constexpr std::uint32_t kBuffers = 14; // of the kernel that takes most
     const compute::Limits   limits   = context.limits();
-    const bool fits = limits.sharedMemory >= sizeof(float) * (shared::kTailPool + shared::kTailSums) && limits.buffers >= kBuffers &&
-                      limits.invocations >= Shapes{}.region.x;
+    const bool              fits     = limits.sharedMemory >= sizeof(float) * (shared::kTailPool + shared::kTailSums) &&
+                      limits.buffers >= kBuffers && limits.invocations >= Shapes{}.region.x;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
     return schedule == Schedule::fused ||
            (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);

@@ -90,9 +90,9 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
         setGroups(tileArgument(l), {0, 1, loads_}); // enableSteps() copies the number of tiles here
     if (k.fused) {
         tail_.emplace(context, kernels, grids_, loads);
-        const auto count = [](const Groups& groups) { return std::size_t(groups.x) * groups.y; };
-        const std::size_t most = std::max({2 * count(sharedByGroups(0)), 2 * count(regionsOf(0, rimOfUp(2))),
-                                           count(everyNode(k.fused->probe, 0))});
+        const auto        count = [](const Groups& groups) { return std::size_t(groups.x) * groups.y; };
+        const std::size_t most  = std::max(
+             {2 * count(sharedByGroups(0)), 2 * count(regionsOf(0, rimOfUp(2))), count(everyNode(k.fused->probe, 0))});
         groupSums_.emplace(reals("sums of workgroups", most * loads_));
         tickets_.emplace(context, "tickets", 4 * (std::size_t(loads_) + 2), Intent::processor);
         layoutLevels_.emplace(context, "levels of rigidities", sizeof(shared::RigidityLevel) * levels.size(),
@@ -393,7 +393,7 @@ Groups PlatePasses::regionsOf(std::size_t l, int rim) const
 // Goes down from level l. From the second step of conjugate gradients on it takes the last step on its way.
 void PlatePasses::goDown(Recorder& pass, std::size_t l, int sweeps, int step)
 {
-    const LevelBuffers&        b = levels[l];
+    const LevelBuffers&        b      = levels[l];
     const Buffer&              below  = levels[l + 1].force;
     const auto                 kernel = std::size_t(sweeps - 1);
     const shared::TransferPush transfer{level(l), level(l + 1)};
@@ -404,9 +404,8 @@ void PlatePasses::goDown(Recorder& pass, std::size_t l, int sweeps, int step)
                     transfer, groups);
     const bool odd = step % 2 == 1;
     pass(k.fused->downUpdating[kernel],
-         {b.rigidity, b.divisor, b.tableX, b.tableZ, b.w[0], below, b.force, state,
-          directionOf(l, step - 1), b.forces, odd ? b.otherLeft : b.left, odd ? b.left : b.otherLeft,
-          b.answer},
+         {b.rigidity, b.divisor, b.tableX, b.tableZ, b.w[0], below, b.force, state, directionOf(l, step - 1), b.forces,
+          odd ? b.otherLeft : b.left, odd ? b.left : b.otherLeft, b.answer},
          transfer, groups);
 }
 

@@ -131,7 +131,7 @@ private:
     [[nodiscard]] std::size_t     argumentBytes() const { return kSizeBytes * (kSizes + grids_.levels.size()); }
     [[nodiscard]] std::size_t     tileArgument(std::size_t l) const { return kSizeBytes * (kSizes + l); }
     /// Returns whether levels are smoothed in plate_down.comp, plate_up.comp and the tail, which have no extra sweeps.
-    [[nodiscard]] bool            isFused() const noexcept { return tail_ && jumps_ == Jumps::none; }
+    [[nodiscard]] bool isFused() const noexcept { return tail_ && jumps_ == Jumps::none; }
 
     [[nodiscard]] int smoothFromZero(Recorder& pass, std::size_t l, int sweeps);
     [[nodiscard]] int smoothInReverse(Recorder& pass, std::size_t l, int at, int sweeps);
@@ -151,9 +151,9 @@ private:
     void takeTailStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins, float tolerance);
     void takeRegionStep(Recorder& pass, std::size_t l, int sweeps, int step, std::uint32_t begins, float tolerance);
     [[nodiscard]] const compute::Buffer& directionOf(std::size_t l, int step) const;
-    void                                 probe(Recorder& pass, std::size_t l, const compute::Buffer& z, int step, float tolerance);
-    void prepareFused(Recorder& pass);
-    void solveTail(Recorder& pass, std::size_t l, int sweeps, const compute::Buffer& force);
+    void                      probe(Recorder& pass, std::size_t l, const compute::Buffer& z, int step, float tolerance);
+    void                      prepareFused(Recorder& pass);
+    void                      solveTail(Recorder& pass, std::size_t l, int sweeps, const compute::Buffer& force);
     [[nodiscard]] std::size_t beginNested(Recorder& pass);
 
     compute::Context&        context_;

@@ -37,7 +37,7 @@ public:
     [[nodiscard]] shared::TailPush pushFrom(std::size_t level) const;
     /// \param steps  of conjugate gradients on that level
     [[nodiscard]] shared::NestedPush nestedPush(std::size_t level, int steps) const;
-    [[nodiscard]] compute::Groups  groups() const noexcept { return {1, 1, loads_}; }
+    [[nodiscard]] compute::Groups    groups() const noexcept { return {1, 1, loads_}; }
 
     /// Bindings of plate_tail.comp.
     /// \param rigidity, divisor  of all levels from the tail's first on, see RigidityLayout
@@ -48,8 +48,8 @@ public:
     /// Bindings of plate_nested.comp, from loads of a level to its deflection.
     [[nodiscard]] std::vector<compute::Binding> nestedBindings(const compute::Binding& rigidity,
                                                                const compute::Binding& divisor,
-                                                               const compute::Buffer& load,
-                                                               const compute::Buffer& deflection) const;
+                                                               const compute::Buffer&  load,
+                                                               const compute::Buffer&  deflection) const;
 
 private:
     [[nodiscard]] compute::Buffer field(compute::Context& context, const char* name) const;
