@@ -99,7 +99,7 @@ struct IndexFrame {
         }
         double all = 0; // [m]
         for (const glm::dvec3& p : positions) all = std::max(all, largest(p - centre));
-        size = std::max(size, 2 * all / kFloatReach);
+        size = std::max({size, 2 * all / kFloatReach, std::numeric_limits<double>::min()}); // which underflow makes 0
         if (all > 0) scale = std::ldexp(1.0, std::clamp(-std::ilogb(size) - 1, kLeastScaling, kMostScaling));
         reach = all * scale;
     }
