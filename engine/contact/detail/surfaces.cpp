@@ -84,6 +84,16 @@ double deepest(std::span<const SurfacePlane> planes, const glm::dvec3& place) no
     return -height;
 }
 
+/// Returns the place, raised to the height over the known surfaces from which on points are not hidden by them. From
+/// the foot of a wall a ball reaches few points of it that high, of a random one at times none, or a single one that
+/// tells little of where the wall faces; from here it reaches half a disc.
+glm::dvec3 aboveSurfaces(const Surfaces& surfaces, glm::dvec3 place) noexcept
+{
+    for (const SurfacePlane& plane : surfaces.all())
+        place += std::max(0.0, kNoHeight * surfaces.spacing - plane.height(place)) * plane.normal;
+    return place;
+}
+
 } // namespace
 
 void Surfaces::remove(int which) noexcept
@@ -251,7 +261,7 @@ bool SurfaceTracker::addSurface(Surfaces& surfaces, const VisiblePoints& visible
 bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const glm::dvec3& towards) noexcept
 {
     if (surfaces.count == Surfaces::kMost) return false;
-    const VisiblePoints visible = findVisible(surfaces, place);
+    const VisiblePoints visible = findVisible(surfaces, aboveSurfaces(surfaces, place));
     if (!visible.any) {
         if (surfaces.count == 0) surfaces.seen = {};
         return false;
