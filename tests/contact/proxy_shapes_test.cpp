@@ -278,8 +278,9 @@ TEST(ProxyShapes, AThinWallIsNotPassedAtItsFoot)
     const struct {
         double angle;
         bool   goesOn;
-        int    before; ///< passed of 160, as long as the proxy looked from the foot itself
-    } cases[] = {{90, true, 19}, {90, false, 5}, {75, true, 8}, {105, true, 49}, {120, true, 43}};
+        int    before; ///< passed of 160, looking from the foot itself, and with walls below 60 degrees as ceilings
+    } cases[] = {{90, true, 19},  {90, false, 5},  {75, true, 8},   {105, true, 49},
+                 {120, true, 43}, {60, true, 134}, {60, false, 133}};
     for (const auto& [angle, goesOn, before] : cases)
         EXPECT_EQ(passedAWall(Layout::random, 40, goesOn, angle), 0)
             << "of 160; angle " << angle << ", goes on " << goesOn << "; before: " << before;
