@@ -18,8 +18,9 @@ constexpr int kFitsAtPoint = 3;
 /// cloud has hardly any.
 constexpr double kSparser = 2;
 
-/// A plane whose cosine to a known one is lower, and which passes through it here, is the known one from below [1].
-constexpr double kFromBelow = -0.5;
+/// A plane whose cosine to a known one is lower, and which passes through it here, is the known one from below [1]:
+/// 134 degrees. Noise that looks like a ceiling faces the floor; a wall that leans over it by 45 degrees need not.
+constexpr double kFromBelow = -0.7;
 
 /// Least support of a surface seen from afar [1]: points all around. With less it lies past a border or an edge.
 constexpr double kSureSupport = 0.9;
@@ -82,6 +83,16 @@ double deepest(std::span<const SurfacePlane> planes, const glm::dvec3& place) no
     double height = 0;
     for (const SurfacePlane& plane : planes) height = std::min(height, plane.height(place));
     return -height;
+}
+
+/// Returns the place, raised to the height over the known surfaces from which on points are not hidden by them. From
+/// the foot of a wall a ball reaches few points of it that high, of a random one at times none, or a single one that
+/// tells little of where the wall faces; from here it reaches half a disc.
+glm::dvec3 aboveSurfaces(const Surfaces& surfaces, glm::dvec3 place) noexcept
+{
+    for (const SurfacePlane& plane : surfaces.all())
+        place += std::max(0.0, kNoHeight * surfaces.spacing - plane.height(place)) * plane.normal;
+    return place;
 }
 
 } // namespace
@@ -251,7 +262,7 @@ bool SurfaceTracker::addSurface(Surfaces& surfaces, const VisiblePoints& visible
 bool SurfaceTracker::discover(Surfaces& surfaces, const glm::dvec3& place, const glm::dvec3& towards) noexcept
 {
     if (surfaces.count == Surfaces::kMost) return false;
-    const VisiblePoints visible = findVisible(surfaces, place);
+    const VisiblePoints visible = findVisible(surfaces, aboveSurfaces(surfaces, place));
     if (!visible.any) {
         if (surfaces.count == 0) surfaces.seen = {};
         return false;

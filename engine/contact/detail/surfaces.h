@@ -42,10 +42,11 @@ struct RestPoint {
 
 /// Finds surfaces and follows them as the proxy moves.
 ///
-/// A surface is found by a ball about the proxy: a plane is fitted at its nearest visible point, one that no known
-/// surface hides, from several directions in turn. A found surface is fitted again at the foot of the proxy. Where it
-/// is known which way points face, those that face the proxy are preferred, and a surface keeps to the side it was
-/// found on; but where it would end only because points face the other way, their side is ignored.
+/// A surface is found by a ball about the proxy, or above the surfaces that are known: a plane is fitted at its nearest
+/// visible point, one that no known surface hides, from several directions in turn. A found surface is fitted again at
+/// the foot of the proxy. Where it is known which way points face, those that face the proxy are preferred, and a
+/// surface keeps to the side it was found on; but where it would end only because points face the other way, their side
+/// is ignored.
 /// \thread one; allocates nothing after construction
 /// \source our own reconstruction, after the idea that only visible points may count
 class SurfaceTracker {
