@@ -120,6 +120,18 @@ private:
     }
 };
 
+/// Rigidities and inverse divisors of all levels of a tail, where it has them.
+std::pair<std::vector<float>, std::vector<float>> fieldsOf(const Levels& levels, const TailLayout& tail)
+{
+    std::vector<float> rigidity(tail.nodes, -1.0F), divisor(tail.nodes, -1.0F); // -1 between the levels
+    for (std::size_t l = 0; l < levels.levels.size(); ++l) {
+        const RoughLevel& level = levels.levels[l];
+        std::ranges::copy(level.rigidity, rigidity.begin() + tail.levels[l].field);
+        std::ranges::copy(host::inverseDivisor(level.g, level.rigidity), divisor.begin() + tail.levels[l].field);
+    }
+    return {rigidity, divisor};
+}
+
 /// Numbers with 48 digits.
 std::vector<shared::FloatPair> roughPairs(std::size_t count, unsigned seed)
 {
@@ -399,15 +411,9 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
                 const Levels     levels(plate);
                 const TailLayout tail = tailLayout(levels.grids);
                 ASSERT_EQ(tail.first, 0u);
-                std::vector<float> rigidity(tail.nodes, -1.0F), divisor(tail.nodes, -1.0F); // -1 between the levels
-                for (std::size_t l = 0; l < levels.levels.size(); ++l) {
-                    const RoughLevel& level = levels.levels[l];
-                    std::ranges::copy(level.rigidity, rigidity.begin() + tail.levels[l].field);
-                    std::ranges::copy(host::inverseDivisor(level.g, level.rigidity),
-                                      divisor.begin() + tail.levels[l].field);
-                }
-                const std::size_t coarsest = nodesOf(levels.levels.back().g);
-                const auto        inverse  = roughPairs(coarsest * coarsest, 35);
+                const auto [rigidity, divisor] = fieldsOf(levels, tail);
+                const std::size_t coarsest     = nodesOf(levels.levels.back().g);
+                const auto        inverse      = roughPairs(coarsest * coarsest, 35);
                 for (std::size_t first = 0; first < levels.levels.size(); ++first) {
                     SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", sweeps: " + std::to_string(sweeps) +
                                  ", from level " + std::to_string(first));
@@ -439,13 +445,7 @@ TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
             const Levels     levels(plate);
             const TailLayout tail = tailLayout(levels.grids);
             ASSERT_EQ(tail.first, 0u);
-            std::vector<float> rigidity(tail.nodes, -1.0F), divisor(tail.nodes, -1.0F); // -1 between the levels
-            for (std::size_t l = 0; l < levels.levels.size(); ++l) {
-                const RoughLevel& level = levels.levels[l];
-                std::ranges::copy(level.rigidity, rigidity.begin() + tail.levels[l].field);
-                std::ranges::copy(host::inverseDivisor(level.g, level.rigidity),
-                                  divisor.begin() + tail.levels[l].field);
-            }
+            const auto [rigidity, divisor]          = fieldsOf(levels, tail);
             const std::size_t              coarsest = nodesOf(levels.levels.back().g);
             std::vector<shared::FloatPair> inverse  = roughPairs(coarsest * coarsest, 35);
             for (std::size_t n = 0; n < inverse.size(); ++n)
