@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -162,33 +162,37 @@ struct Sited {
     double      share = 0; ///< [1]
 };
 
-/// Returns the tensor at a place by linear regression over the sites within a radius; that of the nearest site, where
-/// there are none.
-ChartTensor regressionAt(const ChartPoint& place, std::span<const Sited> sites, double radius)
+/// Returns the tensor of the site nearest to a place.
+ChartTensor nearestTo(const ChartPoint& place, std::span<const Sited> sites)
 {
-    constexpr double   kFlatter = 0.02; // of the weight, against slopes that hardly any site determines [1]
-    Eigen::Matrix3d    normal   = Eigen::Matrix3d::Zero();
-    Eigen::Matrix3d    right    = Eigen::Matrix3d::Zero();
-    const ChartTensor* nearest  = nullptr;
-    double             least    = std::numeric_limits<double>::infinity();
+    return std::ranges::min_element(sites, {},
+                                    [&](const Sited& site) {
+                                        const double x = site.place.x - place.x, z = site.place.z - place.z;
+                                        return x * x + z * z;
+                                    })
+        ->tensor;
+}
+
+/// Returns the tensor at a place by linear regression over the sites within a radius; empty where there are none.
+std::optional<ChartTensor> regressionAt(const ChartPoint& place, std::span<const Sited> sites, double radius)
+{
+    constexpr double kFlatter = 0.02; // of the weight, against slopes that hardly any site determines [1]
+    Eigen::Matrix3d  normal   = Eigen::Matrix3d::Zero();
+    Eigen::Matrix3d  right    = Eigen::Matrix3d::Zero();
     for (const Sited& site : sites) {
         const double x = (site.place.x - place.x) / radius, z = (site.place.z - place.z) / radius;
         const double squared = x * x + z * z;
-        if (squared < least) {
-            least   = squared;
-            nearest = &site.tensor;
-        }
         if (squared >= 1) continue;
         const double          weight = site.share * (1 - squared) * (1 - squared);
         const Eigen::Vector3d row(1, x, z);
         normal += weight * row * row.transpose();
         right += weight * row * Eigen::RowVector3d(site.tensor.x, site.tensor.z, site.tensor.xz);
     }
-    if (!(normal(0, 0) > 0)) return *nearest;
+    if (!(normal(0, 0) > 0)) return {};
     normal(1, 1) += kFlatter * normal(0, 0);
     normal(2, 2) += kFlatter * normal(0, 0);
     const Eigen::RowVector3d found = normal.ldlt().solve(right).row(0);
-    return {found[0], found[1], found[2]};
+    return ChartTensor{found[0], found[1], found[2]};
 }
 
 using Lattice = std::vector<ChartTensor>; ///< row by row along z
@@ -204,13 +208,20 @@ Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const
     for (const CurvatureSite& site : sitesOf(rung, what))
         sites.push_back({site.place, inChart(site.here, frame), site.share});
     if (sites.empty()) return {};
-    Lattice lattice;
-    for (int i = 0; i < side; ++i)
+    const double       radius = kAround * rungRadius(rung);
+    Lattice            lattice;
+    std::vector<Sited> beside; // of a row
+    for (int i = 0; i < side; ++i) {
+        const double x = window.corner.x + window.grid.sizeX() * i / (side - 1);
+        beside.clear();
+        std::ranges::copy_if(sites, std::back_inserter(beside),
+                             [&](const Sited& site) { return std::abs(site.place.x - x) < radius; });
         for (int j = 0; j < side; ++j) {
-            const ChartPoint place{window.corner.x + window.grid.sizeX() * i / (side - 1),
-                                   window.corner.z + window.grid.sizeZ() * j / (side - 1)};
-            lattice.push_back(regressionAt(place, sites, kAround * rungRadius(rung)));
+            const ChartPoint place{x, window.corner.z + window.grid.sizeZ() * j / (side - 1)};
+            const auto       found = regressionAt(place, beside, radius);
+            lattice.push_back(found ? *found : nearestTo(place, sites));
         }
+    }
     return lattice;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -17,9 +19,9 @@ public:
     /// Sorts the places into cubes.
     /// \param places  finite [m], at least one
     /// \param edge    of the cubes [m], >= 0; they are larger if they were too many. The radius of the searches suits.
-    /// \param mostAlong  most cubes along the longest side, some: as many as a disc of a thousand points needs; more cost
-    ///                   more to clear than they save
-    void build(std::span<const glm::dvec3> places, double edge, int mostAlong = 32);
+    /// \param mostAlong  most cubes along the longest side; where it is 0 as many as the points need that lie on a surface:
+    ///                   more cost more to clear than they save
+    void build(std::span<const glm::dvec3> places, double edge, int mostAlong = 0);
 
     /// Calls visit(index of the place, squared distance [m^2]) for the places within `radius` [m] of `place`, in an
     /// order that depends on nothing but the places and theirs. A place for which `visit` returns true is taken out: no
@@ -78,7 +80,9 @@ public:
     }
 
 private:
-    using Cells = std::array<int, 3>; ///< along each axis
+    using Cells                = std::array<int, 3>; ///< along each axis
+    using Word                 = std::uint64_t;
+    static constexpr int kBits = 64;
 
     struct Entry {
         glm::dvec3    place; ///< [m]
@@ -104,22 +108,35 @@ private:
         return d.x * d.x + d.y * d.y + d.z * d.z;
     }
 
-    /// Visits the cubes around a place.
+    /// Visits the cubes around a place in which there is anything.
     /// \param grid  this one, const or not, as its cubes are for `visit`
     template <class Grid, class Visit>
     static void eachCube(Grid& grid, const glm::dvec3& place, double radius, const Visit& visit)
     {
         const Cells low = grid.cellsOf(place, -radius), high = grid.cellsOf(place, radius);
         for (int z = low[2]; z <= high[2]; ++z)
-            for (int y = low[1]; y <= high[1]; ++y)
-                for (int x = low[0]; x <= high[0]; ++x)
-                    visit(grid.cubes_[std::size_t((z * grid.cells_[1] + y) * grid.cells_[0] + x)]);
+            for (int y = low[1]; y <= high[1]; ++y) {
+                const auto row    = std::size_t(z * grid.cells_[1] + y);
+                auto*      filled = grid.filled_.data() + row * grid.wordsOfRow();
+                for (int x = low[0]; x <= high[0]; ++x) {
+                    const Word left = filled[x / kBits] >> (x % kBits);
+                    x               = left == 0 ? x | (kBits - 1) : x + std::countr_zero(left);
+                    if (left == 0 || x > high[0]) continue;
+                    auto& cube = grid.cubes_[row * std::size_t(grid.cells_[0]) + std::size_t(x)];
+                    visit(cube);
+                    if constexpr (!std::is_const_v<Grid>)
+                        if (cube.begin == cube.end) filled[x / kBits] &= ~(Word(1) << (x % kBits));
+                }
+            }
     }
+
+    [[nodiscard]] std::size_t wordsOfRow() const noexcept { return std::size_t(cells_[0] + kBits - 1) / kBits; }
 
     glm::dvec3                 low_{};          ///< [m]
     double                     perMetre_ = 0;   ///< cubes per metre
     Cells                      cells_{1, 1, 1}; ///< cubes
     std::vector<Cube>          cubes_;
+    std::vector<Word>          filled_;  ///< row by row along x, a bit for each cube: whether anything is left in it
     std::vector<Entry>         entries_; ///< cube by cube
     std::vector<std::uint32_t> cubeAt_;  ///< of each place
 };

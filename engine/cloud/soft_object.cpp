@@ -8,6 +8,7 @@
 
 #include "engine/cloud/coarse_object.h"
 #include "engine/cloud/curvature_notes.h"
+#include "engine/cloud/surface_links.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -44,7 +45,7 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
       mesh_(std::make_shared<const SurfaceMesh>()),
       survey_(std::make_shared<const SurfaceSurvey>(
           *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
-      curvatureNotes_(std::make_shared<CurvatureNotes>()),
+      links_(std::make_shared<SurfaceLinks>(index_, survey_)), curvatureNotes_(std::make_shared<CurvatureNotes>()),
       foundationShape_(std::make_shared<const std::vector<double>>()),
       stiffening_(std::make_shared<const std::vector<double>>()), held_(std::make_shared<const std::vector<double>>()),
       material_(material)

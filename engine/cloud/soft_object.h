@@ -14,6 +14,7 @@ namespace palp {
 
 class CoarseObject;
 struct CurvatureNotes;
+class SurfaceLinks;
 
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
@@ -71,6 +72,10 @@ public:
     /// same points and thickness share it.
     [[nodiscard]] CurvatureNotes& curvatureNotes() const noexcept { return *curvatureNotes_; }
 
+    /// Returns which points a step along the surface leads to, to be found by whoever floods it; all objects of the same
+    /// points share it.
+    [[nodiscard]] SurfaceLinks& links() const noexcept { return *links_; }
+
     /// Returns what withFoundation() took [1]; empty: the foundation is the same everywhere.
     [[nodiscard]] std::span<const double> foundationShape() const noexcept { return *foundationShape_; }
 
@@ -101,6 +106,7 @@ private:
     std::shared_ptr<const std::vector<Triangle>> faces_;           ///< never null
     std::shared_ptr<const SurfaceMesh>           mesh_;            ///< never null
     std::shared_ptr<const SurfaceSurvey>         survey_;          ///< never null
+    std::shared_ptr<SurfaceLinks>                links_;           ///< never null
     std::shared_ptr<CurvatureNotes>              curvatureNotes_;  ///< never null
     std::shared_ptr<const std::vector<double>>   foundationShape_; ///< never null
     std::shared_ptr<const std::vector<double>>   stiffening_;      ///< [1/m] never null

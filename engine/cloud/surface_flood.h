@@ -16,25 +16,13 @@ namespace palp {
 /// a thin object does not happen to the other.
 ///
 /// From the point nearest to the middle a flood goes from point to point, inside the ball, over steps of at most
-/// kStep local spacings that run along the surface: a step that rises more steeply than kSteepest over the mean tangent
-/// plane of its ends, noise apart, leads to another sheet. The normals' sign is carried along. Points
+/// kLongestStep local spacings that run along the sheet (SurfaceLinks). The normals' sign is carried along. Points
 /// whose side the survey knows must all face alike: so layers half a spacing apart are told apart. Around a rim that is
 /// inside the ball the flood does reach the other side, whose normals then point away. Beside a tenfold step in density
 /// it passes over one point in some thousand that has no neighbour as near as its spacing tells.
-/// \thread one; allocates only where it has not had as many points before
+/// \thread one; allocates only where it has not had as many points before, or where nobody has flooded before
 class SurfaceFlood {
 public:
-    /// Longest step in spacings of the sparser of its two points [1]. A disc of that radius holds 13 random points, so
-    /// that one in 300 000 has no neighbour.
-    static constexpr double kStep = 2;
-
-    /// Steepest step over the tangent plane, the sine of its angle [1]: across an edge of 90 degrees enough steps are
-    /// flatter, straight through a sheet's thickness none is.
-    static constexpr double kSteepest = 0.55;
-
-    /// Height over the tangent plane that noise may make of a step [standard deviations].
-    static constexpr double kNoisy = 3;
-
     /// \param object  outlives this
     /// \throws Error if the cloud has fewer than seven points or most of them coincide
     explicit SurfaceFlood(const SoftObject& object);
@@ -48,9 +36,9 @@ public:
                                                        const std::optional<glm::dvec3>& outward = {});
 
     /// Does the same for a ball whose points are known, and returns their numbers among them. Valid until the next call.
-    /// \param ball     points of the object, in any order
+    /// \param ranks    of points of the object along its index, in any order; rising ones take least time
     /// \param sparser  their spacing over the object's, where they are a share of its points [1]
-    [[nodiscard]] std::span<const std::uint32_t> reachIn(std::span<const std::uint32_t> ball, const glm::dvec3& centre,
+    [[nodiscard]] std::span<const std::uint32_t> reachIn(std::span<const std::uint32_t> ranks, const glm::dvec3& centre,
                                                          const std::optional<glm::dvec3>& outward = {},
                                                          double                           sparser = 1);
 
@@ -60,20 +48,24 @@ public:
 
 private:
     [[nodiscard]] std::optional<std::size_t> start(const glm::dvec3& centre, const std::optional<glm::dvec3>& outward);
+    [[nodiscard]] bool                       isNear(std::size_t from, std::size_t to, double distance2) const noexcept;
+    [[nodiscard]] bool                       runsAlong(std::size_t from, std::size_t to) const noexcept;
+    [[nodiscard]] bool                       take(std::size_t from, std::size_t to);
     void                                     noteSide(std::size_t reached);
-    [[nodiscard]] bool connects(std::size_t from, std::size_t to, double distance2) const noexcept;
+    void                                     floodByLinks();
+    void                                     floodByGrid(double longest);
 
     const SoftObject& object_;
 
     // Scratch: the points of the ball, and what the flood has reached and not yet left, as indices among them.
-    std::span<const std::uint32_t> inBall_;
+    std::span<const std::uint32_t> ranks_;
     std::vector<std::uint32_t>     gathered_;
     std::vector<glm::dvec3>        places_;  ///< [m]
     std::vector<double>            steps_;   ///< longest of each [m]
     std::vector<glm::dvec3>        carried_; ///< normals as carried, of those that are reached [1]
     std::vector<std::uint32_t>     reached_;
-    std::vector<std::uint32_t>     points_;
-    std::vector<glm::dvec3>        normals_; ///< [1]
+    std::vector<std::uint32_t>     found_, points_; ///< ranks; points of the object
+    std::vector<glm::dvec3>        normals_;        ///< [1]
     PointGrid                      grid_;
     std::optional<bool>            inverted_; ///< the carried normals point inwards; empty: no side is known yet
 };

@@ -11,6 +11,7 @@
 
 #include "engine/chart/chart.h"
 #include "engine/cloud/surface_flood.h"
+#include "engine/cloud/surface_links.h"
 
 namespace palp {
 namespace {
@@ -227,23 +228,23 @@ TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const B
     }
     SurfaceFlood flood(object);
     if (ball.ranks.size() <= 2 * enough) {
-        const auto numbers = flood.reachIn(ball.points, contact.point, contact.outward);
+        const auto numbers = flood.reachIn(ball.ranks, contact.point, contact.outward);
         return {object, ball, numbers, flood.normals()};
     }
     constexpr double kThin = 0.5; // longest step over the thickness [1]
-    const double step = SurfaceFlood::kStep * object.survey().spacing(nearest) / (kThin * object.material().thickness);
-    const auto   all  = double(ball.ranks.size());
-    const EvenShare chosen =
+    const double     step  = kLongestStep * object.survey().spacing(nearest) / (kThin * object.material().thickness);
+    const auto       all   = double(ball.ranks.size());
+    const EvenShare  chosen =
         EvenShare::of(ball.ranks.size(), std::max(enough, std::size_t(std::min(all, all * step * step))));
-    std::vector<std::uint32_t> some, points; // numbers in the ball; of the object
+    std::vector<std::uint32_t> some, ranks; // numbers in the ball; along the index
     for (std::uint32_t k = 0; k < ball.ranks.size(); ++k) {
         if (!chosen.has(ball.ranks[k])) continue;
         some.push_back(k);
-        points.push_back(ball.points[k]);
+        ranks.push_back(ball.ranks[k]);
     }
     const double               sparser = std::sqrt(all / double(std::max<std::size_t>(1, some.size())));
     std::vector<std::uint32_t> numbers;
-    for (const std::uint32_t k : flood.reachIn(points, contact.point, contact.outward, sparser))
+    for (const std::uint32_t k : flood.reachIn(ranks, contact.point, contact.outward, sparser))
         numbers.push_back(some[k]);
     return {object, ball, numbers, flood.normals()};
 }
