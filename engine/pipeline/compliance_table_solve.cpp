@@ -97,7 +97,6 @@ MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& latti
 ComplianceTable::Entries windowOf(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
                                   double tolerance)
 {
-    constexpr double  kLoose = 1e-2; // works are right to its square
     ShellWindows&     kept   = *lattice.shells;
     const ShellShape  shape  = meanShape(shell);
     const std::size_t middle = lattice.loads.size() / 2;
@@ -106,7 +105,7 @@ ComplianceTable::Entries windowOf(const Shell& shell, const FootprintLattice& la
         if (const auto found = kept.known.find(shape); found != kept.known.end()) return found->second;
     }
     const auto mean =
-        solver.solveFootprints(shellOfShape(shape, shell), lattice.loads, middle, std::max(tolerance, kLoose));
+        solver.solveFootprints(shellOfShape(shape, shell), lattice.loads, middle, tolerance, PlateSolver::kAsWorks);
     const auto               at = complianceOf(mean.responses[middle]);
     ComplianceTable::Entries own{};
     for (std::size_t n = 0; n < mean.responses.size(); ++n) {
@@ -227,8 +226,9 @@ TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, Pl
 MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
                           ComplianceTable& table)
 {
-    FootprintSolution solved = solver.solveFootprints(plate, lattice.loads, lattice.loads.size() / 2, tolerance);
-    const OverNode    over(plate.rigidity);
+    FootprintSolution solved =
+        solver.solveFootprints(plate, lattice.loads, lattice.loads.size() / 2, tolerance, PlateSolver::kAsWorks);
+    const OverNode over(plate.rigidity);
     // The window's correction depends on how far a dent spreads, (D/k)^(1/4): a foundation that is firmer throughout is
     // as good as a softer sheet.
     const double firmer = plate.foundationShape.values().empty() || lattice.wholeObject
@@ -240,7 +240,8 @@ MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, P
 MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
                           ComplianceTable& table)
 {
-    FootprintSolution solved = solver.solveFootprints(shell, lattice.loads, lattice.loads.size() / 2, tolerance);
+    FootprintSolution solved =
+        solver.solveFootprints(shell, lattice.loads, lattice.loads.size() / 2, tolerance, PlateSolver::kAsWorks);
     const auto own = lattice.loads.size() > 1 && !lattice.wholeObject ? windowOf(shell, lattice, solver, tolerance)
                                                                       : ComplianceTable::Entries{};
     return fillTable(std::move(solved), lattice, OverNode(shell.bending.rigidity), own, table);

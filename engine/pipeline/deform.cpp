@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/chart/exponential_map.h"
-#include "engine/cloud/surface_flood.h"
+#include "engine/cloud/surface_links.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/other_face.h"
@@ -191,7 +191,7 @@ std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObje
     for (std::size_t k = 0; k < surface.size(); ++k) {
         places[k]  = surface.place(k);
         normals[k] = surface.normalAt(k);
-        steps[k]   = SurfaceFlood::kStep * object.survey().spacing(surface.point(k));
+        steps[k]   = kLongestStep * object.survey().spacing(surface.point(k));
     }
     const double careful = settings.window / 2 + kernelReach(patch.spacing, cellOf(settings)); // beyond, nothing counts
     return exponentialMap(patch.chart.origin, patch.chart.frame, places, normals, steps,
@@ -534,9 +534,10 @@ void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
     const StageClock  clock(patch.times.solve);
     const Footprint   finger(unitLoad(patch, settings));
-    FootprintSolution solved = patch.curvature
-                                   ? solver.solveFootprints(shellOf(patch), {&finger, 1}, 0, settings.tolerance)
-                                   : solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance);
+    FootprintSolution solved =
+        patch.curvature
+            ? solver.solveFootprints(shellOf(patch), {&finger, 1}, 0, settings.tolerance, settings.tolerance)
+            : solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance, settings.tolerance);
     keep(patch, std::move(solved.whole), solved.responses.front().work);
 }
 
@@ -616,8 +617,8 @@ LargeLaw coarseLaw(const Patch& patch, const PatchSettings& settings, const Shel
     const NodeField load  = unitLoad(shell.bending.grid, settings, everySecondOf(patch.covered, shell.bending.grid));
     const Footprint finger(load);
     const NodeField linear =
-        (patch.curvature ? solver.solveFootprints(shell, {&finger, 1}, 0, kShapesTolerance)
-                         : solver.solveFootprints(shell.bending, {&finger, 1}, 0, kShapesTolerance))
+        (patch.curvature ? solver.solveFootprints(shell, {&finger, 1}, 0, kShapesTolerance, kShapesTolerance)
+                         : solver.solveFootprints(shell.bending, {&finger, 1}, 0, kShapesTolerance, kShapesTolerance))
             .whole.deflection;
     LargeLaw     law   = largeLaw(shell, load, linear, reach, solver, kShapesTolerance);
     const double wrong = law.tangent.front() * dot(unitLoad(patch, settings), patch.response);
@@ -767,7 +768,9 @@ std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& 
     const PlateGrid& grid = shell.bending.grid;
     const Footprint  finger(unitLoad(grid, settings, everySecondOf(patch.covered, grid)));
     const auto       of = [&](const auto& what) {
-        return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance).responses.front().work;
+        return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance, PlateSolver::kAsWorks)
+            .responses.front()
+            .work;
     };
     return patch.curvature ? of(shell) : of(shell.bending);
 }
@@ -791,7 +794,9 @@ std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings
         shell.bending.edges = {edge, edge, edge, edge};
         shell.stressEdges   = stressEdgesFor(shell.bending.edges);
         const auto of       = [&](const auto& what) {
-            return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance).responses.front().work;
+            return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance, PlateSolver::kAsWorks)
+                .responses.front()
+                .work;
         };
         const double c = patch.curvature ? of(shell) : of(shell.bending);
         return feltStiffness(settings.forceLaw, patch.contactStiffness, c);

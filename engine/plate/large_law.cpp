@@ -118,7 +118,7 @@ public:
     {
         if (flat_) return solver_.solve(shell_.bending, forces, tolerance_).deflection;
         const Footprint all(forces);
-        return solver_.solveFootprints(shell_, {&all, 1}, 0, tolerance_).whole.deflection;
+        return solver_.solveFootprints(shell_, {&all, 1}, 0, tolerance_, tolerance_).whole.deflection;
     }
 
 private:
@@ -132,7 +132,8 @@ private:
 /// The shapes w_i, the stresses f_i that curvature gives them, and the stresses g_ij of their slopes.
 struct Shapes {
     std::vector<NodeField>                          w, f, right; ///< right: A w_i + B f_i
-    std::array<std::array<NodeField, kMost>, kMost> g;           ///< i <= j
+    std::array<std::array<NodeField, kMost>, kMost> g,
+        stretch; ///< i <= j; half of what their slopes load the membrane with
 
     [[nodiscard]] const NodeField& slopes(std::size_t i, std::size_t j) const
     {
@@ -160,7 +161,10 @@ void addShape(Shapes& shapes, const Shell& shell, const Solves& solves, NodeFiel
     }
     if (!solves.flat()) loads.push_back(couplingLoad(shell, shapes.w[n]));
     std::vector<NodeField> fields = solves.relax(loads);
-    for (std::size_t i = 0; i <= n; ++i) shapes.g[i][n] = std::move(fields[i]);
+    for (std::size_t i = 0; i <= n; ++i) {
+        shapes.g[i][n]       = std::move(fields[i]);
+        shapes.stretch[i][n] = std::move(loads[i]);
+    }
     shapes.f.push_back(solves.flat() ? NodeField(shell.bending.grid) : std::move(fields[n + 1]));
 }
 
@@ -191,7 +195,7 @@ Shapes shapesOf(const Shell& shell, const NodeField& load, const NodeField& line
 }
 
 /// Returns the energy of a sum of the shapes; phi is the one that goes with it.
-Quartic energyOf(const Shapes& shapes, const Plate& membrane)
+Quartic energyOf(const Shapes& shapes)
 {
     Quartic           energy;
     const std::size_t n = shapes.w.size();
@@ -199,11 +203,11 @@ Quartic energyOf(const Shapes& shapes, const Plate& membrane)
         for (std::size_t j = 0; j < n; ++j) {
             energy.two[i][j] = dot(shapes.w[j], shapes.right[i]);
             if (j < i) continue;
-            const NodeField slopes = stretchOf(membrane, shapes.w[i], shapes.w[j]);
+            const NodeField& half = shapes.stretch[i][j];
             for (std::size_t k = 0; k < n; ++k) {
-                energy.three[k][i][j] = energy.three[k][j][i] = dot(shapes.f[k], slopes);
+                energy.three[k][i][j] = energy.three[k][j][i] = 2 * dot(shapes.f[k], half);
                 for (std::size_t l = 0; l < n; ++l)
-                    energy.four[i][j][k][l] = energy.four[j][i][k][l] = dot(shapes.slopes(k, l), slopes) / 2;
+                    energy.four[i][j][k][l] = energy.four[j][i][k][l] = dot(shapes.slopes(k, l), half);
             }
         }
     energy.makeSymmetric();
@@ -278,7 +282,7 @@ LargeLaw largeLaw(const Shell& shell, const NodeField& load, const NodeField& li
     PALP_EXPECT(reach > 0, "a law of no reach");
     const Solves  solves(shell, solver, tolerance);
     const Shapes  shapes = shapesOf(shell, load, linear, solves);
-    const Quartic raw    = energyOf(shapes, solves.membrane());
+    const Quartic raw    = energyOf(shapes);
     const Quartic energy = raw.changed(byDepth(shapes, load, raw));
 
     LargeLaw law{.step = reach / LargeLaw::kSteps};

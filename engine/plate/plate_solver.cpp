@@ -5,6 +5,7 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <list>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -38,18 +39,25 @@ std::string stoppedAt(const SolveReport& report)
 
 constexpr std::size_t kMostKeptNodes = 129 * 129; ///< of a shell whose solver's memory is kept: some 20 MB
 
-/// Solves for footprints on a shell by multigrid: the whole one to the tolerance, and the others to its square root, so
-/// that their works are right to it.
-FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell& shell,
-                                      std::span<const Footprint> loads, std::size_t whole, double tolerance)
+/// Returns how far off an answer may be whose work is right to the tolerance: that is of the second order [1].
+double looseFor(double tolerance)
 {
-    constexpr double       kLoosest = 1e-2; // as of a plate's footprints [1]
-    std::vector<NodeField> others;
+    constexpr double kLoosest = 1e-2; // beyond it the estimate of the first steps is a guess
+    return std::min(kLoosest, std::sqrt(tolerance));
+}
+
+/// Solves for footprints on a shell by multigrid: the whole one to `drawn`, and the others so far that their works are
+/// right to the tolerance.
+FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell& shell,
+                                      std::span<const Footprint> loads, std::size_t whole, double tolerance,
+                                      double drawn)
+{
+    std::vector<Footprint> others;
     for (std::size_t n = 0; n < loads.size(); ++n)
-        if (n != whole) others.push_back(loads[n].load(shell.bending.grid));
-    const NodeField   middle = loads[whole].load(shell.bending.grid);
-    ShellAnswer       first  = solver.solve({&middle, 1}, tolerance).front();
-    const auto        rest   = solver.solve(others, std::min(kLoosest, std::sqrt(tolerance)));
+        if (n != whole) others.push_back(loads[n]);
+    const double      loose = looseFor(tolerance);
+    ShellAnswer       first = solver.solve(loads.subspan(whole, 1), std::min(drawn, loose)).front();
+    const auto        rest  = solver.solve(others, loose);
     FootprintSolution solution;
     for (std::size_t n = 0; n < loads.size(); ++n) {
         const ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
@@ -67,6 +75,21 @@ bool sameButRigidity(const Plate& a, const Plate& b)
 {
     return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation &&
            a.foundationShape.values().empty() == b.foundationShape.values().empty();
+}
+
+bool areAlike(const NodeField& a, const NodeField& b)
+{
+    return a.nodesX() == b.nodesX() && a.nodesZ() == b.nodesZ() && a.values() == b.values();
+}
+
+/// Whether they are the same to the last bit.
+bool areAlike(const Shell& a, const Shell& b)
+{
+    const auto alike = [&](const NodeField Shell::*which) { return areAlike(a.*which, b.*which); };
+    return sameButRigidity(a.bending, b.bending) && areAlike(a.bending.rigidity, b.bending.rigidity) &&
+           areAlike(a.bending.foundationShape, b.bending.foundationShape) && a.stressEdges == b.stressEdges &&
+           alike(&Shell::membraneCompliance) && alike(&Shell::curvatureX) && alike(&Shell::curvatureZ) &&
+           alike(&Shell::curvatureXZ) && alike(&Shell::sheared);
 }
 
 /// Returns the report of all loads, or one of a load that did not converge.
@@ -140,14 +163,20 @@ struct PlateSolver::Multigrid {
         }
     };
 
-    compute::Context                    context;
-    bool                                likeTheHost; ///< smooths as the host does, and takes one load after the other
-    PlateKernels                        kernels;
-    std::optional<PlateKernels>         kernelsOfEights; ///< once they are needed
-    std::optional<ShellKernels>         kernelsOfShells; ///< the same
-    std::optional<MultigridShellSolver> shells; ///< of the last shell; none: there was none, or it was too large
-    Prepared                            loads, eights;
-    MemoryShortage                      shortage; ///< of memory for fields of all loads together, in numbers of one
+    /// A solver of a shell, and the shell that it was made ready for.
+    struct PreparedShell {
+        std::optional<MultigridShellSolver> solver;
+        Shell                               shell;
+    };
+
+    compute::Context            context;
+    bool                        likeTheHost; ///< smooths as the host does, and takes one load after the other
+    PlateKernels                kernels;
+    std::optional<PlateKernels> kernelsOfEights;           ///< once they are needed
+    std::optional<ShellKernels> kernelsOfShells;           ///< the same
+    std::list<PreparedShell>    shells;                    ///< the last ones of usual size, the newest first
+    Prepared                    loads, footprints, eights; ///< footprints: whose works are wanted alone
+    MemoryShortage              shortage; ///< of memory for fields of all loads together, in numbers of one
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
         : context(settings), likeTheHost(isHost() || (bits == SoftwareBits::ofTheHost &&
@@ -165,30 +194,25 @@ struct PlateSolver::Multigrid {
         return ShellKernels::suit(context) ? "" : context.processor().name + " has no doubles, which shells need";
     }
 
-    /// The solver is kept, because memory that is made anew for each patch costs as much as a set-up.
+    /// The solver is kept, because memory that is made anew for each patch costs as much as a set-up; and one for another
+    /// grid too, because a law of large deflections has its own. A shell that is solved once more is not set up again.
     [[nodiscard]] FootprintSolution solve(const Shell& wanted, std::span<const Footprint> given, std::size_t whole,
-                                          double tolerance)
+                                          double tolerance, double drawn)
     {
         const bool isKept = wanted.bending.grid.nodes() <= kMostKeptNodes;
         try {
-            if (shells) {
-                shells->setShell(wanted);
-            } else if (isHost()) {
-                shells.emplace(wanted);
-            } else {
-                if (!kernelsOfShells) kernelsOfShells.emplace(context);
-                shells.emplace(wanted, context, *kernelsOfShells);
-            }
-            FootprintSolution solution = byMultigridOfShells(*shells, wanted, given, whole, tolerance);
-            if (!isKept) shells.reset();
+            makeReady(wanted);
+            FootprintSolution solution =
+                byMultigridOfShells(*shells.front().solver, wanted, given, whole, tolerance, drawn);
+            if (!isKept) shells.pop_front();
             return solution;
         } catch (...) {
-            shells.reset(); // half of it may be another shell's
+            shells.clear(); // half of one may be another shell's
             throw;
         }
     }
 
-    [[nodiscard]] int memories() const { return loads.made + eights.made; }
+    [[nodiscard]] int memories() const { return loads.made + footprints.made + eights.made; }
 
     [[nodiscard]] bool isHost() const { return context.processor().kind == compute::ProcessorKind::host; }
     [[nodiscard]] bool hasDoubles() const { return context.processor().float64; }
@@ -244,22 +268,44 @@ struct PlateSolver::Multigrid {
 
     [[nodiscard]] double timeOf(const PlateTrial& trial, const Clock& clock)
     {
-        return leastTime(clock,
-                         [&] { (void)solve(trial.plate, trial.loads, trial.loads.size() / 2, trial.tolerance); });
+        return leastTime(clock, [&] {
+            (void)solve(trial.plate, trial.loads, trial.loads.size() / 2, trial.tolerance, PlateSolver::kAsWorks);
+        });
     }
 
     /// \return the solution; not converged if that of any load is not
     [[nodiscard]] FootprintSolution solve(const Plate& wanted, std::span<const Footprint> given, std::size_t whole,
-                                          double tolerance)
+                                          double tolerance, double drawn)
     {
         return inBatches(wanted, given.size(), [&](std::size_t batch) {
-            return likeTheHost ? solveByEights(wanted, given, whole, tolerance)
-                               : solveByBatches(wanted, given, whole, tolerance, batch);
+            return likeTheHost ? solveByEights(wanted, given, whole, tolerance, drawn)
+                               : solveByBatches(wanted, given, whole, tolerance, drawn, batch);
         });
     }
 
 private:
-    static constexpr std::size_t kEight = 8;
+    static constexpr std::size_t kEight = 8, kMostShells = 2;
+
+    /// Puts a solver of this shell in front.
+    void makeReady(const Shell& wanted)
+    {
+        auto found = std::ranges::find_if(
+            shells, [&](const PreparedShell& kept) { return kept.shell.bending.grid == wanted.bending.grid; });
+        if (found != shells.end()) {
+            shells.splice(shells.begin(), shells, found);
+            if (areAlike(shells.front().shell, wanted)) return;
+            shells.front().solver->setShell(wanted);
+        } else {
+            if (shells.size() >= kMostShells) shells.pop_back(); // its memory goes before the next one's comes
+            shells.emplace_front();
+            if (!isHost() && !kernelsOfShells) kernelsOfShells.emplace(context);
+            if (isHost())
+                shells.front().solver.emplace(wanted);
+            else
+                shells.front().solver.emplace(wanted, context, *kernelsOfShells);
+        }
+        shells.front().shell = wanted;
+    }
 
     [[nodiscard]] static std::vector<std::size_t> indices(std::size_t count)
     {
@@ -281,20 +327,22 @@ private:
     }
 
     [[nodiscard]] FootprintSolution solveByBatches(const Plate& wanted, std::span<const Footprint> given,
-                                                   std::size_t whole, double tolerance, std::size_t batch)
+                                                   std::size_t whole, double tolerance, double drawn, std::size_t batch)
     {
         FootprintSolution solution;
         solution.responses.resize(given.size());
-        const std::vector<std::size_t> all   = indices(given.size());
-        const double                   setUp = loads.prepare(context, kernels, wanted, batch, tolerance);
-        std::optional<SolveReport>     worst;
+        const std::vector<std::size_t> all    = indices(given.size());
+        const auto [by, setUp]                = prepareFootprints(wanted, tolerance, drawn, batch);
+        const bool                 floatsSuit = roundsLess(*by, tolerance);
+        std::optional<SolveReport> worst;
         for (std::span<const std::size_t> left = all; !left.empty();) {
-            const auto now           = left.first(std::min(batch, left.size()));
-            left                     = left.subspan(now.size());
-            const SolveReport report = solveTogether(loads, given, now, solution);
+            const auto now     = left.first(std::min(batch, left.size()));
+            left               = left.subspan(now.size());
+            SolveReport report = solveTogether(*by, given, now, solution);
+            report.converged   = report.converged && floatsSuit;
             if (!worst || (worst->converged && !report.converged)) worst = report;
             if (whole >= now.front() && whole <= now.back())
-                solution.whole.deflection = loads.solver->deflectionOf(whole - now.front());
+                solution.whole.deflection = by->solver->deflectionOf(whole - now.front());
         }
         solution.whole.report                   = *worst;
         solution.whole.report.setUpMilliseconds = setUp;
@@ -302,14 +350,14 @@ private:
     }
 
     [[nodiscard]] FootprintSolution solveByEights(const Plate& wanted, std::span<const Footprint> given,
-                                                  std::size_t whole, double tolerance)
+                                                  std::size_t whole, double tolerance, double drawn)
     {
         FootprintSolution solution;
         solution.responses.resize(given.size());
-        const double setUp       = loads.prepare(context, kernels, wanted, 1, tolerance);
-        SolveReport  report      = solveTogether(loads, given, {&whole, 1}, solution);
-        report.setUpMilliseconds = setUp;
-        solution.whole           = {loads.solver->deflectionOf(0), report};
+        const auto [alone, setUp] = prepareFootprints(wanted, tolerance, drawn, 1);
+        SolveReport report        = solveTogether(*alone, given, {&whole, 1}, solution);
+        report.setUpMilliseconds  = setUp;
+        solution.whole            = {alone->solver->deflectionOf(0), report};
 
         std::vector<std::size_t> others = indices(given.size());
         others.erase(others.begin() + std::ptrdiff_t(whole));
@@ -319,23 +367,39 @@ private:
             left             = left.subspan(eight.size());
             if (inFloats && eight.size() == kEight && solveTogether(eights, given, eight, solution).converged) continue;
             for (const std::size_t n : eight) { // too few, or too much contrast for floats
-                const SolveReport own = solveTogether(loads, given, {&n, 1}, solution);
+                const SolveReport own = solveTogether(*alone, given, {&n, 1}, solution);
                 if (!own.converged) solution.whole.report = own;
             }
         }
         return solution;
     }
 
-    /// \return whether floats are enough for works to this tolerance: what they round is not squared
+    /// Makes a solver ready for footprints: the one for loads where a deflection is wanted more exactly than works ask
+    /// for, else one of its own, so that a session that wants both in turns makes neither anew.
+    /// \return the solver, and the milliseconds that it took
+    std::pair<Prepared*, double> prepareFootprints(const Plate& wanted, double tolerance, double drawn,
+                                                   std::size_t batch)
+    {
+        const double loose = looseFor(tolerance);
+        Prepared&    by    = drawn < loose ? loads : footprints;
+        return {&by, by.prepare(context, kernels, wanted, batch, std::min(drawn, loose))};
+    }
+
+    /// Returns whether rounding is less than the tolerance of works, in which it is not squared.
+    static bool roundsLess(const Prepared& by, double tolerance)
+    {
+        return by.solver->rounding() <= std::max(tolerance, MultigridPlateSolver::kLeastFloatTolerance);
+    }
+
+    /// \return whether floats are enough for works to this tolerance
     [[nodiscard]] bool prepareEights(const Plate& wanted, double tolerance)
     {
-        constexpr double kLoosest = 1e-2; // beyond it the estimate of the first steps is a guess
         if (!kernelsOfEights)
             kernelsOfEights.emplace(context, Schedule::automatic, Precision::floatGradients,
                                     isHost() ? Smoother::automatic : Smoother::chebyshev,
                                     isHost() ? FieldLayout::sideBySide : FieldLayout::apart);
-        eights.prepare(context, *kernelsOfEights, wanted, kEight, std::min(kLoosest, std::sqrt(tolerance)));
-        return eights.solver->rounding() <= std::max(tolerance, MultigridPlateSolver::kLeastFloatTolerance);
+        eights.prepare(context, *kernelsOfEights, wanted, kEight, looseFor(tolerance));
+        return roundsLess(eights, tolerance);
     }
 
     /// Solves for these loads in one batch, filled up as by solveFilledUp().
@@ -548,22 +612,22 @@ std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<c
 }
 
 FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<const Footprint> loads, std::size_t whole,
-                                               double tolerance)
+                                               double tolerance, double drawn)
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     auto answer = byMultigrid<FootprintSolution>(
-        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance); });
+        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance, drawn); });
     if (!answer) answer = byReference(plate, loads, whole, tolerance);
     countTakeover(answer->whole.report.solver);
     return std::move(*answer);
 }
 
 FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
-                                               double tolerance)
+                                               double tolerance, double drawn)
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     FootprintSolution solution;
-    if (processor_) solution = byProcessor(shell, loads, whole, tolerance);
+    if (processor_) solution = byProcessor(shell, loads, whole, tolerance, drawn);
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
         if (processor_) note_ = stoppedAt(solution.whole.report);
         solution = byReference(shell, loads, whole, tolerance);
@@ -573,14 +637,14 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
 }
 
 FootprintSolution PlateSolver::byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
-                                           double tolerance)
+                                           double tolerance, double drawn)
 {
     if (std::string why = processor_->whyNoShells(); !why.empty()) {
         note_ = std::move(why);
-        return host().solve(shell, loads, whole, tolerance);
+        return host().solve(shell, loads, whole, tolerance, drawn);
     }
     try {
-        return processor_->solve(shell, loads, whole, tolerance);
+        return processor_->solve(shell, loads, whole, tolerance, drawn);
     } catch (const compute::ProcessorOutOfMemory& error) {
         if (processor_->isHost()) throw;
         note_ = error.what();
@@ -588,7 +652,7 @@ FootprintSolution PlateSolver::byProcessor(const Shell& shell, std::span<const F
         if (processor_->isHost()) throw;
         loseProcessor(error);
     }
-    return host().solve(shell, loads, whole, tolerance);
+    return host().solve(shell, loads, whole, tolerance, drawn);
 }
 
 FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,

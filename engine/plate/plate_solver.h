@@ -88,20 +88,25 @@ public:
     [[nodiscard]] std::vector<PlateSolution> solveAll(const Plate& plate, std::span<const NodeField> nodalForces,
                                                       double tolerance = 1e-4);
 
+    /// For solveFootprints(): no deflection is wanted more exactly than works ask for.
+    static constexpr double kAsWorks = 1;
+
     /// Solves for loads on few nodes of one plate, with the whole deflection under one of them.
     ///
-    /// That one is solved to the tolerance, in doubles. The works of the others are as accurate although they are solved
-    /// less far: to the square root of the tolerance, at most 1e-2, see MultigridPlateSolver::solveFootprints(). On the
-    /// host they are solved by eights, in floats; on a GPU all in one batch.
-    /// \param whole  index of that load
+    /// A work is of the second order in the error of its answer: loads are solved to the square root of the tolerance, at
+    /// most 1e-2, see MultigridPlateSolver::solveFootprints(). On the host they are solved by eights, in floats, and the
+    /// one whose deflection is wanted in doubles; on a GPU all in one batch.
+    /// \param whole      index of that load
+    /// \param tolerance  of works, relative [1]
+    /// \param drawn      of the deflection, relative in the energy norm [1]: less than works ask for takes more steps
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
-                                                    std::size_t whole, double tolerance = 1e-4);
+                                                    std::size_t whole, double tolerance, double drawn);
 
     /// Does the same for a shell; works hold its shear across the thickness too, see shearWork(). A processor
-    /// without doubles, or whose memory does not fit one, lets the host solve it, and note() says so. On the reference solver every load is solved by the
-    /// reference solver of shells.
+    /// without doubles, or whose memory does not fit one, lets the host solve it, and note() says so. On the reference
+    /// solver every load is solved by the reference solver of shells.
     [[nodiscard]] FootprintSolution solveFootprints(const Shell& shell, std::span<const Footprint> loads,
-                                                    std::size_t whole, double tolerance = 1e-4);
+                                                    std::size_t whole, double tolerance, double drawn);
 
     /// Returns the time that it is [ms]; only differences count.
     using Clock = std::function<double()>;
@@ -157,7 +162,7 @@ private:
     [[nodiscard]] static FootprintSolution byReference(const Plate& plate, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
     [[nodiscard]] FootprintSolution byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
-                                                double tolerance);
+                                                double tolerance, double drawn);
     [[nodiscard]] static FootprintSolution byReference(const Shell& shell, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace palp {
 namespace {
@@ -11,26 +13,39 @@ bool isFinite(const NodeField& field)
     return std::ranges::all_of(field.values(), [](double value) { return std::isfinite(value); });
 }
 
-/// The moments of a bent sheet.
-struct Moments {
-    NodeField x, z; ///< Mx, Mz at the nodes [N]
-    NodeField xz;   ///< twisting moment of the cell whose first corner is the node [N]
+/// What shear needs of a row of nodes: moments [N], those of twisting of the cells ahead, and how each node gives way.
+struct RowOfMoments {
+    std::vector<double> x, z, xz, gives; ///< [N], [N], [N], [m/N]
 
-    Moments(const Plate& plate, const NodeField& w) : x(plate.grid), z(plate.grid), xz(plate.grid)
+    explicit RowOfMoments(int nodes)
+        : x(std::size_t(nodes)), z(std::size_t(nodes)), xz(std::size_t(nodes)), gives(std::size_t(nodes))
     {
-        const PlateGrid& g  = plate.grid;
+    }
+
+    /// \param i  from 0 to the last row of cells; moments on the rim are not known here
+    void fill(const Shell& shell, const NodeField& w, int i)
+    {
+        const Plate&     plate = shell.bending;
+        const PlateGrid& g     = plate.grid;
         const double     nu = plate.poissonRatio, hx = g.spacingX, hz = g.spacingZ;
-        const NodeField& D = plate.rigidity;
-        for (int i = 0; i < g.cellsX; ++i)
-            for (int j = 0; j < g.cellsZ; ++j) {
-                const double mean = (D(i, j) + D(i + 1, j) + D(i, j + 1) + D(i + 1, j + 1)) / 4;
-                xz(i, j) = mean * (1 - nu) * (w(i, j) - w(i + 1, j) - w(i, j + 1) + w(i + 1, j + 1)) / (hx * hz);
-                if (i == 0 || j == 0) continue; // moments on the rim are not known here
-                const double xx = (w(i - 1, j) - 2 * w(i, j) + w(i + 1, j)) / (hx * hx);
-                const double zz = (w(i, j - 1) - 2 * w(i, j) + w(i, j + 1)) / (hz * hz);
-                x(i, j)         = D(i, j) * (xx + nu * zz);
-                z(i, j)         = D(i, j) * (zz + nu * xx);
-            }
+        const double     perXX = 1 / (hx * hx), perZZ = 1 / (hz * hz), perXZ = (1 - nu) / (4 * hx * hz);
+        const int        n = g.nodesZ();
+        const double *   d = &plate.rigidity(i, 0), *at = &w(i, 0), *c = &shell.membraneCompliance(i, 0);
+        const double *   dAhead = d + n, *ahead = at + n;
+        for (int j = 0; j + 1 < n; ++j)
+            xz[std::size_t(j)] =
+                perXZ * (d[j] + d[j + 1] + dAhead[j] + dAhead[j + 1]) * (at[j] - ahead[j] - at[j + 1] + ahead[j + 1]);
+        std::copy(c, c + n, gives.begin());
+        if (const auto& counts = shell.sheared.values(); !counts.empty())
+            for (int j = 0; j < n; ++j) gives[std::size_t(j)] *= shell.sheared(i, j);
+        if (i == 0) return;
+        const double* behind = at - n;
+        for (int j = 1; j + 1 < n; ++j) {
+            const double xx   = perXX * (behind[j] - 2 * at[j] + ahead[j]),
+                         zz   = perZZ * (at[j - 1] - 2 * at[j] + at[j + 1]);
+            x[std::size_t(j)] = d[j] * (xx + nu * zz);
+            z[std::size_t(j)] = d[j] * (zz + nu * xx);
+        }
     }
 };
 
@@ -40,21 +55,27 @@ double shearWork(const Shell& shell, const NodeField& w)
 {
     constexpr double kShare = 5.0 / 6; // of the thickness that bears shear evenly: Reissner's [1]
     const PlateGrid& g      = shell.bending.grid;
-    const Moments    m(shell.bending, w);
-    const NodeField& C      = shell.membraneCompliance;
-    const auto       counts = [&](int i, int j) { return shell.sheared.values().empty() ? 1 : shell.sheared(i, j); };
-    double           work   = 0;
+    const double     perX = 1 / g.spacingX, perZ = 1 / g.spacingZ;
+    const auto       last = std::size_t(g.cellsZ); // inner nodes come before it
+    RowOfMoments     behind(g.nodesZ()), row(g.nodesZ()), ahead(g.nodesZ());
+    row.fill(shell, w, 0);
+    ahead.fill(shell, w, 1);
+    double work = 0;
     // Halfway between two inner nodes both terms of a component of div M lie at the same place. 1/(G h) is 2 (1 + nu) C.
-    for (int i = 1; i + 1 < g.cellsX; ++i)
-        for (int j = 1; j < g.cellsZ; ++j) {
-            const double q = (m.x(i + 1, j) - m.x(i, j)) / g.spacingX + (m.xz(i, j) - m.xz(i, j - 1)) / g.spacingZ;
-            work += q * q * (counts(i, j) * C(i, j) + counts(i + 1, j) * C(i + 1, j)) / 2;
+    for (int i = 1; i < g.cellsX; ++i) {
+        std::swap(behind, row);
+        std::swap(row, ahead);
+        for (std::size_t j = 1; j + 1 < last; ++j) {
+            const double q = perZ * (row.z[j + 1] - row.z[j]) + perX * (row.xz[j] - behind.xz[j]);
+            work += q * q * (row.gives[j] + row.gives[j + 1]) / 2;
         }
-    for (int i = 1; i < g.cellsX; ++i)
-        for (int j = 1; j + 1 < g.cellsZ; ++j) {
-            const double q = (m.z(i, j + 1) - m.z(i, j)) / g.spacingZ + (m.xz(i, j) - m.xz(i - 1, j)) / g.spacingX;
-            work += q * q * (counts(i, j) * C(i, j) + counts(i, j + 1) * C(i, j + 1)) / 2;
+        if (i + 1 == g.cellsX) break;
+        ahead.fill(shell, w, i + 1);
+        for (std::size_t j = 1; j < last; ++j) {
+            const double q = perX * (ahead.x[j] - row.x[j]) + perZ * (row.xz[j] - row.xz[j - 1]);
+            work += q * q * (row.gives[j] + ahead.gives[j]) / 2;
         }
+    }
     return work * 2 * (1 + shell.bending.poissonRatio) / kShare * g.spacingX * g.spacingZ;
 }
 

@@ -196,8 +196,10 @@ TEST(DeformWithTable, ThePatchIsThatOfDeformAndTheTablesMiddleIsItsCompliance)
     const Patch          alone   = deform(object, contact, kSkin, solver);
 
     ASSERT_TRUE(both.table.has_value());
-    EXPECT_NEAR(both.patch.compliance / alone.compliance, 1, 1e-6);
-    EXPECT_NEAR(std::exp(both.table->middle().lnCompliance) / alone.compliance, 1, 1e-6);
+    EXPECT_NEAR(both.patch.compliance / alone.compliance, 1, 1e-4) << "the tolerance of tables";
+    EXPECT_NEAR(std::exp(both.table->middle().lnCompliance), both.patch.compliance, 1e-12 * alone.compliance);
+    for (std::size_t n = 0; n < alone.response.values().size(); ++n) // of a table it is drawn, and solved to 1e-2
+        EXPECT_NEAR(both.patch.response.values()[n], alone.response.values()[n], 3e-3 * alone.compliance) << n;
     EXPECT_NEAR(std::exp(both.table->middle().lnContactStiffness) / alone.contactStiffness, 1, 0.02)
         << "over the footprint, where rigidity changes slowly";
     ASSERT_EQ(both.patch.pointResponse.size(), alone.pointResponse.size());

@@ -127,7 +127,7 @@ TEST(LargeTouch, OfATableItIsThatOfTheTouch)
         const Patch            one     = deform(object, contact, fine, host);
         const PatchWithTable   table   = deformWithTable(object, contact, fine, lattice, host);
         ASSERT_TRUE(one.large && table.patch.large);
-        EXPECT_NEAR(table.patch.large->tangent.front() / one.large->tangent.front(), 1, 1e-6); // of two solutions
+        EXPECT_NEAR(table.patch.large->tangent.front() / one.large->tangent.front(), 1, 1e-4); // works of tables
         for (std::size_t n = 1; n < one.large->force.size(); ++n) // the grid is twice as coarse: measured 0.4 %
             EXPECT_NEAR(table.patch.large->force[n] / one.large->force[n], 1, 0.01) << n;
     }

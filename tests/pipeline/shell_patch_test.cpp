@@ -262,7 +262,7 @@ TEST(ShellPatch, TablesOfHomogeneousDomesAreFlat)
         deformWithTable(dome, touchAt(dome, {0, 0, 50e-3}, glm::dvec3(0, 0, 1), 10e-3), kShell, lattice, host);
     ASSERT_TRUE(both.table.has_value());
     EXPECT_NEAR(std::exp(both.table->middle().lnCompliance), both.patch.compliance, 1e-12);
-    EXPECT_NEAR(both.patch.compliance / touchOf(dome, {0, 0, 50e-3}).compliance, 1, 1e-9);
+    EXPECT_NEAR(both.patch.compliance / touchOf(dome, {0, 0, 50e-3}).compliance, 1, 1e-4) << "the tolerance of tables";
     for (int n = 0; n < 25; ++n) // a curvature of 0.3 % more or less, and works right to 1e-4
         EXPECT_NEAR(both.table->compliance[std::size_t(n)].value, both.table->middle().lnCompliance, 0.01) << n;
 }

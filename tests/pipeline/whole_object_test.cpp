@@ -71,7 +71,7 @@ double complianceOf(const PlateGrid& grid, const PlateEdges& edges, double x, do
     const Plate     plate{grid, edges, kSheet.poissonRatio, 0, NodeField(grid, kSheet.rigidity(kModulus))};
     const Footprint finger(footprintLoad(grid, 1, x, z, kWhole.footprintRadius));
     PlateSolver     reference("reference");
-    return reference.solveFootprints(plate, {&finger, 1}, 0, 1e-6).responses.front().work;
+    return reference.solveFootprints(plate, {&finger, 1}, 0, 1e-6, 1e-6).responses.front().work;
 }
 
 TEST(WholeObject, ASheetHeldFarAwayIsFeltAsSoftAsItIs)

@@ -54,48 +54,61 @@ struct MultigridShellSolver::Impl {
         setUpMilliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
     }
 
+    /// What is wanted of all loads.
+    struct Wanted {
+        double tolerance;
+        int    mostSteps;
+        bool   stressFunctions;
+    };
+
     /// Solves for these loads at once, by vectors that have been made for as many or more.
     template <class Fields>
-    void solve(Fields& fields, std::span<const NodeField> forces, double tolerance, int mostSteps,
+    void solve(Fields& fields, std::span<const Footprint> loads, const Wanted& wanted,
                std::vector<ShellAnswer>& answers)
     {
         const auto began = std::chrono::steady_clock::now();
-        fields.setRight(forces);
-        const auto states = ShellGradients<Fields>(fields).solve(tolerance, mostSteps);
+        fields.setRight(loads);
+        const auto states = ShellGradients<Fields>(fields).solve(wanted.tolerance, wanted.mostSteps);
         if constexpr (std::is_same_v<Fields, ProcessorShellFields>) fields.fetch();
         const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
+        for (std::size_t n = 0; n < loads.size(); ++n)
+            answers.push_back({fieldOf(fields, n, 0, 1 / stiffness),
+                               wanted.stressFunctions ? fieldOf(fields, n, 1, phiUnit / stiffness) : NodeField(),
+                               states[n].work / stiffness, reportOf(states[n], wall)});
+    }
+
+    /// Returns the deflections of a load, or its stress function.
+    template <class Fields>
+    [[nodiscard]] NodeField fieldOf(const Fields& fields, std::size_t load, int which, double unit) const
+    {
         const ShellLayout& layout = levels.front().layout;
-        for (std::size_t n = 0; n < forces.size(); ++n) {
-            answers.push_back(
-                {NodeField(grid), NodeField(grid), states[n].work / stiffness, reportOf(states[n], wall)});
-            std::size_t node = 0;
-            for (int i = 0; i <= grid.cellsX; ++i)
-                for (int j = 0; j <= grid.cellsZ; ++j, ++node) {
-                    answers.back().deflection.values()[node] = fields.answer(n, placeIn(layout, i, j, 0)) / stiffness;
-                    answers.back().stressFunction.values()[node] =
-                        fields.answer(n, placeIn(layout, i, j, 1)) * phiUnit / stiffness;
-                }
+        NodeField          field(grid);
+        double*            to = field.values().data();
+        for (int i = 0; i <= grid.cellsX; ++i) {
+            const std::ptrdiff_t even = placeIn(layout, i, 0, which), odd = placeIn(layout, i, 1, which);
+            for (int j = 0; j <= grid.cellsZ; ++j)
+                *to++ = fields.answer(load, (j % 2 == 0 ? even : odd) + j / 2) * unit;
         }
+        return field;
     }
 
     /// \return how many of the loads it has solved for
-    std::size_t solveByHost(std::span<const NodeField> left, double tolerance, int mostSteps,
-                            std::vector<ShellAnswer>& answers)
+    std::size_t solveByHost(std::span<const Footprint> left, const Wanted& wanted, std::vector<ShellAnswer>& answers)
     {
         constexpr std::size_t kFewest = 3; // from that many on eight at a time take less time
         if (left.size() < kFewest) {
             if (!alone) alone = std::make_unique<HostShellFields<false>>(levels, coarse, *host.kernels);
-            solve(*alone, left.first(1), tolerance, mostSteps, answers);
+            solve(*alone, left.first(1), wanted, answers);
             return 1;
         }
         if (!together) together = std::make_unique<HostShellFields<true>>(levels, coarse, *host.together);
         const std::size_t count = std::min(left.size(), std::size_t(kLoadsTogether));
-        solve(*together, left.first(count), tolerance, mostSteps, answers);
+        solve(*together, left.first(count), wanted, answers);
         return count;
     }
 
     /// The same on a processor of Vulkan, of as many loads together as fit a share of its memory.
-    std::size_t solveByProcessor(std::span<const NodeField> left, double tolerance, int mostSteps,
+    std::size_t solveByProcessor(std::span<const Footprint> left, const Wanted& wanted,
                                  std::vector<ShellAnswer>& answers)
     {
         constexpr std::size_t     kMostBytes = std::size_t(256) << 20;
@@ -107,8 +120,19 @@ struct MultigridShellSolver::Impl {
             by = std::make_unique<ProcessorShellFields>(*context, kernels->all(), levels, coarse, count);
             by->setLevels(coarse);
         }
-        solve(*by, left.first(count), tolerance, mostSteps, answers);
+        solve(*by, left.first(count), wanted, answers);
         return count;
+    }
+
+    [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const Footprint> loads, const Wanted& wanted)
+    {
+        PALP_EXPECT(wanted.tolerance > 0 && wanted.mostSteps > 0, "a tolerance and a number of steps above 0");
+        for (const Footprint& load : loads)
+            PALP_EXPECT(load.parts.empty() || load.parts.back().node < grid.nodes(), "a load on another grid");
+        std::vector<ShellAnswer> answers;
+        for (auto left = loads; !left.empty();)
+            left = left.subspan(context ? solveByProcessor(left, wanted, answers) : solveByHost(left, wanted, answers));
+        return answers;
     }
 
     [[nodiscard]] SolveReport reportOf(const Gradients& state, double wall) const
@@ -151,13 +175,17 @@ MultigridShellSolver& MultigridShellSolver::operator=(MultigridShellSolver&&) no
 std::vector<ShellAnswer> MultigridShellSolver::solve(std::span<const NodeField> nodalForces, double tolerance,
                                                      int mostSteps)
 {
-    PALP_EXPECT(tolerance > 0 && mostSteps > 0, "a tolerance and a number of steps above 0");
-    for (const NodeField& forces : nodalForces) PALP_EXPECT(forces.on(impl_->grid), "forces on another grid");
-    std::vector<ShellAnswer> answers;
-    for (auto left = nodalForces; !left.empty();)
-        left = left.subspan(impl_->context ? impl_->solveByProcessor(left, tolerance, mostSteps, answers)
-                                           : impl_->solveByHost(left, tolerance, mostSteps, answers));
-    return answers;
+    std::vector<Footprint> loads;
+    for (const NodeField& forces : nodalForces) {
+        PALP_EXPECT(forces.on(impl_->grid), "forces on another grid");
+        loads.emplace_back(forces);
+    }
+    return impl_->solve(loads, {tolerance, mostSteps, true});
+}
+
+std::vector<ShellAnswer> MultigridShellSolver::solve(std::span<const Footprint> loads, double tolerance, int mostSteps)
+{
+    return impl_->solve(loads, {tolerance, mostSteps, false});
 }
 
 } // namespace palp

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "engine/core/grid.h"
+#include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
 #include "engine/plate/shell.h"
 
@@ -38,7 +39,7 @@ private:
 /// What a load does to a shell.
 struct ShellAnswer {
     NodeField   deflection{};     ///< w [m]
-    NodeField   stressFunction{}; ///< phi [N m]
+    NodeField   stressFunction{}; ///< phi [N m]; empty if it is not wanted
     double      work = 0;         ///< of the load along w [N m], to the second order in the error
     SolveReport report{}; ///< its estimate is that of the error's energy, the root of the work that is missing [1]
 };
@@ -74,9 +75,15 @@ public:
     /// \param tolerance  of the report's estimate, relative [1]; works are right to its square
     /// \param mostSteps  after which an answer is returned that has not converged
     [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const NodeField> nodalForces, double tolerance,
-                                                 int mostSteps = 60);
+                                                 int mostSteps = kMostSteps);
+
+    /// Does the same for loads on few nodes, without their stress functions.
+    [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const Footprint> loads, double tolerance,
+                                                 int mostSteps = kMostSteps);
 
 private:
+    static constexpr int kMostSteps = 60;
+
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };

@@ -76,7 +76,8 @@ TEST(PlateSolver, AProcessorThatIsLostIsReplacedByTheHost)
     EXPECT_EQ(found.deflection.values(), PlateSolver(compute::kHostProcessor).solve(plate, load).deflection.values());
     EXPECT_EQ(solver.solve(plate, load).report.solver, compute::kHostProcessor) << "from now on";
     const Footprint footprint(load, NodeField(plate.grid), NodeField(plate.grid));
-    EXPECT_EQ(solver.solveFootprints(plate, {&footprint, 1}, 0).whole.report.solver, compute::kHostProcessor);
+    EXPECT_EQ(solver.solveFootprints(plate, {&footprint, 1}, 0, 1e-4, 1e-4).whole.report.solver,
+              compute::kHostProcessor);
 }
 
 /// A plate beyond 513 nodes would take the reference minutes and gigabytes, whatever became of the processor.
@@ -139,8 +140,8 @@ TEST(PlateSolver, LoadsThatDoNotFitTogetherAreSolvedInBatches)
     EXPECT_EQ(solver.counts().memories, 1) << "seven loads by threes: the last one has no solver of its own";
     EXPECT_EQ(solver.counts().takeovers, 0);
     for (const std::size_t which : {std::size_t(0), std::size_t(4), std::size_t(6)}) {
-        const auto felt     = solver.solveFootprints(plate, footprints, which),
-                   expected = whole.solveFootprints(plate, footprints, which);
+        const auto felt     = solver.solveFootprints(plate, footprints, which, 1e-4, 1e-4),
+                   expected = whole.solveFootprints(plate, footprints, which, 1e-4, 1e-4);
         EXPECT_LT(difference(felt.whole.deflection, reference.solve(loads[which]).deflection), 1e-4) << which;
         for (std::size_t n = 0; n < loads.size(); ++n)
             EXPECT_NEAR(felt.responses[n].work, expected.responses[n].work, 1e-6 * felt.responses[n].work)
@@ -267,7 +268,7 @@ TEST(PlateSolver, WhatFootprintsFeelIsRightToTheToleranceOnEveryProcessor)
     for (const std::string& name :
          {processorOfTests(), std::string(compute::kHostProcessor), std::string(PlateSolver::kReference)}) {
         PlateSolver             solver(name);
-        const FootprintSolution found = solver.solveFootprints(plate, loads, 5, 1e-4);
+        const FootprintSolution found = solver.solveFootprints(plate, loads, 5, 1e-4, 1e-4);
         ASSERT_EQ(found.responses.size(), loads.size());
         for (std::size_t n = 0; n < loads.size(); ++n) {
             const NodeField         w     = reference.solve(loads[n].load(plate.grid)).deflection;
@@ -292,7 +293,7 @@ TEST(PlateSolver, WhatFootprintsFeelOverASharpDiscIsRightToTheTolerance)
     std::vector<Footprint>     loads;
     for (int n = 0; n < 9; ++n) loads.emplace_back(footprintLoad(plate.grid, 1, 0.4 + 0.03 * n, 0.4, 0.1));
     PlateSolver solver(processorOfTests());
-    const auto  found = solver.solveFootprints(plate, loads, 4, 1e-4);
+    const auto  found = solver.solveFootprints(plate, loads, 4, 1e-4, PlateSolver::kAsWorks);
     for (std::size_t n = 0; n < loads.size(); ++n) {
         const double truth = responseOf(loads[n], reference.solve(loads[n].load(plate.grid)).deflection).work;
         EXPECT_NEAR(found.responses[n].work, truth, 1e-4 * truth) << "load " << n;
@@ -312,7 +313,8 @@ TEST(PlateSolver, FootprintsHaveTheBitsOfTheHostWhereTheyAreAskedFor)
             loads.emplace_back(footprintLoad(plate.grid, 1, 0.3 + 0.04 * n, 0.5, 0.1), NodeField(plate.grid),
                                NodeField(plate.grid));
         PlateSolver host(compute::kHostProcessor), software("lavapipe", 0, SoftwareBits::ofTheHost);
-        const auto  expected = host.solveFootprints(plate, loads, 4), found = software.solveFootprints(plate, loads, 4);
+        const auto  expected = host.solveFootprints(plate, loads, 4, 1e-4, PlateSolver::kAsWorks),
+                   found     = software.solveFootprints(plate, loads, 4, 1e-4, PlateSolver::kAsWorks);
         for (std::size_t n = 0; n < loads.size(); ++n)
             EXPECT_EQ(found.responses[n].work, expected.responses[n].work) << "load " << n;
         EXPECT_EQ(found.whole.deflection.values(), expected.whole.deflection.values());

@@ -124,7 +124,8 @@ TEST_F(ShellOnProcessor, IsWhatAPlateSolverTakes)
     std::vector<Footprint> loads;
     for (int n = 0; n < 3; ++n) loads.emplace_back(fingertip(shell.bending.grid, 1e-3 * n));
     PlateSolver             solver(processorOfTests()), host("host");
-    const FootprintSolution found = solver.solveFootprints(shell, loads, 1), by = host.solveFootprints(shell, loads, 1);
+    const FootprintSolution found = solver.solveFootprints(shell, loads, 1, 1e-4, 1e-4),
+                            by    = host.solveFootprints(shell, loads, 1, 1e-4, 1e-4);
     EXPECT_EQ(found.whole.report.solver, context_->processor().name);
     EXPECT_EQ(solver.note(), "");
     for (std::size_t n = 0; n < loads.size(); ++n)
@@ -138,7 +139,7 @@ TEST(ShellsOfSmallProcessors, AreSolvedByTheHost)
     PlateSolver     solver(settings);
     const Shell     shell = shellOf(square(16), even(), constant(1, 1, 0), 8);
     const Footprint load(fingertip(shell.bending.grid));
-    const auto      found = solver.solveFootprints(shell, {&load, 1}, 0);
+    const auto      found = solver.solveFootprints(shell, {&load, 1}, 0, 1e-4, 1e-4);
     EXPECT_EQ(found.whole.report.solver, "host");
     EXPECT_TRUE(found.whole.report.converged);
     if (compute::Context(settings).processor().kind != compute::ProcessorKind::host) {

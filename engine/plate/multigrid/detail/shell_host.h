@@ -117,13 +117,13 @@ public:
     }
 
     /// Takes the loads' forces [of any unit], of unknowns alone.
-    void setRight(std::span<const NodeField> forces)
+    void setRight(std::span<const Footprint> forces)
     {
         std::ranges::fill(b_, Real(0));
-        eachUnknownNode(finest_, [&](std::size_t node, std::ptrdiff_t place) {
-            for (std::size_t n = 0; n < forces.size(); ++n)
-                b_[std::size_t(place * kLoads<kTogether>) + n] = Real(forces[n].values()[node]);
-        });
+        for (std::size_t n = 0; n < forces.size(); ++n)
+            eachUnknownPart(finest_, forces[n], [&](std::ptrdiff_t place, double force) {
+                b_[std::size_t(place * kLoads<kTogether>) + n] = Real(force);
+            });
     }
     [[nodiscard]] double answer(std::size_t load, std::ptrdiff_t place) const
     {

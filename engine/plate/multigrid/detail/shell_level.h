@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/plate/footprint.h"
 #include "engine/plate/host/host_kernels.h"
 #include "engine/plate/host/shell_view.h"
 #include "engine/plate/multigrid/detail/grid_hierarchy.h"
@@ -30,14 +31,15 @@ struct ShellLevel {
     [[nodiscard]] double exactAt(int plane, int i, int j) const noexcept;
 };
 
-/// Calls visit(node, place of w) for the nodes whose deflection is unknown.
+/// Calls visit(place of w, force [N]) for the nodes of a load whose deflection is unknown.
 template <class Visit>
-void eachUnknownNode(const ShellLevel& level, const Visit& visit)
+void eachUnknownPart(const ShellLevel& level, const Footprint& load, const Visit& visit)
 {
-    std::size_t node = 0;
-    for (int i = 0; i <= level.layout.cellsX; ++i)
-        for (int j = 0; j <= level.layout.cellsZ; ++j, ++node)
-            if (level.exactAt(kInverseW, i, j) != 0) visit(node, placeIn(level.layout, i, j, 0));
+    const int nodesZ = level.layout.cellsZ + 1;
+    for (const Footprint::Part& part : load.parts) {
+        const int i = int(part.node) / nodesZ, j = int(part.node) % nodesZ;
+        if (level.exactAt(kInverseW, i, j) != 0) visit(placeIn(level.layout, i, j, 0), part.force);
+    }
 }
 
 /// Makes all levels of a shell, the finest first, in the memory of those of another one. Rigidity and compliance are

@@ -307,20 +307,19 @@ void ProcessorShellFields::goAlong(CommandList& list) const
     dots(list, k.dotsOfCycle, left_, levels_.front().x, kRz);
 }
 
-void ProcessorShellFields::setRight(std::span<const NodeField> forces)
+void ProcessorShellFields::setRight(std::span<const Footprint> forces)
 {
     PALP_EXPECT(forces.size() <= loads_, "more loads than the memory is for");
     std::memset(givenRight_.mapped(), 0, givenRight_.bytes());
     std::memset(givenFloats_.mapped(), 0, givenFloats_.bytes());
     const auto doubles = givenRight_.as<double>();
     const auto floats  = givenFloats_.as<float>();
-    eachUnknownNode(source_.front(), [&](std::size_t node, std::ptrdiff_t place) {
-        for (std::size_t n = 0; n < forces.size(); ++n) {
+    for (std::size_t n = 0; n < forces.size(); ++n)
+        eachUnknownPart(source_.front(), forces[n], [&](std::ptrdiff_t place, double force) {
             const std::size_t at = n * numbers() + std::size_t(place);
-            doubles[at]          = forces[n].values()[node];
-            floats[at]           = float(forces[n].values()[node]);
-        }
-    });
+            doubles[at]          = force;
+            floats[at]           = float(force);
+        });
 }
 
 ProcessorShellFields::PerLoad ProcessorShellFields::takeStart()
