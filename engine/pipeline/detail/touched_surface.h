@@ -118,7 +118,8 @@ private:
 };
 
 /// Finds the piece around a contact: its points and their normals. Where the points of the ball face alike and nowhere lie
-/// one over the other, they are the piece; elsewhere a flood finds it, which costs some ten times as much.
+/// one over the other, they are the piece; elsewhere a flood finds it, which costs some five times as much, and ten times where it comes for the
+/// first time.
 /// \param enough  points; where they are more than twice as many the flood takes an even share of them, but none so sparse
 ///                that a step could pass through the sheet
 /// \param ball  of the object's points, about the contact; the answer reads it as long as it lives
