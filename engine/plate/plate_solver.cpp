@@ -163,6 +163,13 @@ struct PlateSolver::Multigrid {
         }
     };
 
+    /// A solver of eight loads at a time.
+    struct Eights {
+        Precision                   precision;
+        std::optional<PlateKernels> kernels{}; ///< once they are needed
+        Prepared                    prepared{};
+    };
+
     /// A solver of a shell, and the shell that it was made ready for.
     struct PreparedShell {
         std::optional<MultigridShellSolver> solver;
@@ -172,10 +179,10 @@ struct PlateSolver::Multigrid {
     compute::Context            context;
     bool                        likeTheHost; ///< smooths as the host does, and takes one load after the other
     PlateKernels                kernels;
-    std::optional<PlateKernels> kernelsOfEights;           ///< once they are needed
-    std::optional<ShellKernels> kernelsOfShells;           ///< the same
-    std::list<PreparedShell>    shells;                    ///< the last ones of usual size, the newest first
-    Prepared                    loads, footprints, eights; ///< footprints: whose works are wanted alone
+    std::optional<ShellKernels> kernelsOfShells;   ///< once they are needed
+    std::list<PreparedShell>    shells;            ///< the last ones of usual size, the newest first
+    Prepared                    loads, footprints; ///< footprints: whose works are wanted alone
+    Eights                      inFloats{Precision::floatGradients}, inDoubles{Precision::best};
     MemoryShortage              shortage; ///< of memory for fields of all loads together, in numbers of one
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
@@ -212,7 +219,10 @@ struct PlateSolver::Multigrid {
         }
     }
 
-    [[nodiscard]] int memories() const { return loads.made + footprints.made + eights.made; }
+    [[nodiscard]] int memories() const
+    {
+        return loads.made + footprints.made + inFloats.prepared.made + inDoubles.prepared.made;
+    }
 
     [[nodiscard]] bool isHost() const { return context.processor().kind == compute::ProcessorKind::host; }
     [[nodiscard]] bool hasDoubles() const { return context.processor().float64; }
@@ -333,7 +343,7 @@ private:
         solution.responses.resize(given.size());
         const std::vector<std::size_t> all    = indices(given.size());
         const auto [by, setUp]                = prepareFootprints(wanted, tolerance, drawn, batch);
-        const bool                 floatsSuit = roundsLess(*by, tolerance);
+        const bool                 floatsSuit = roundsLess(by->solver->rounding(), tolerance);
         std::optional<SolveReport> worst;
         for (std::span<const std::size_t> left = all; !left.empty();) {
             const auto now     = left.first(std::min(batch, left.size()));
@@ -361,12 +371,12 @@ private:
 
         std::vector<std::size_t> others = indices(given.size());
         others.erase(others.begin() + std::ptrdiff_t(whole));
-        const bool inFloats = others.size() >= kEight && prepareEights(wanted, tolerance);
+        Prepared* const by = others.size() < kEight ? nullptr : &prepareEights(wanted, *alone, tolerance);
         for (std::span<const std::size_t> left = others; !left.empty();) {
             const auto eight = left.first(std::min(kEight, left.size()));
             left             = left.subspan(eight.size());
-            if (inFloats && eight.size() == kEight && solveTogether(eights, given, eight, solution).converged) continue;
-            for (const std::size_t n : eight) { // too few, or too much contrast for floats
+            if (by && eight.size() == kEight && solveTogether(*by, given, eight, solution).converged) continue;
+            for (const std::size_t n : eight) { // too few, or too hard for floats
                 const SolveReport own = solveTogether(*alone, given, {&n, 1}, solution);
                 if (!own.converged) solution.whole.report = own;
             }
@@ -386,20 +396,22 @@ private:
     }
 
     /// Returns whether rounding is less than the tolerance of works, in which it is not squared.
-    static bool roundsLess(const Prepared& by, double tolerance)
+    static bool roundsLess(double rounding, double tolerance)
     {
-        return by.solver->rounding() <= std::max(tolerance, MultigridPlateSolver::kLeastFloatTolerance);
+        return rounding <= std::max(tolerance, MultigridPlateSolver::kLeastFloatTolerance);
     }
 
-    /// \return whether floats are enough for works to this tolerance
-    [[nodiscard]] bool prepareEights(const Plate& wanted, double tolerance)
+    /// Makes a solver ready for eight loads at a time: in floats, or in doubles where floats are not enough for works to
+    /// this tolerance.
+    [[nodiscard]] Prepared& prepareEights(const Plate& wanted, const Prepared& alone, double tolerance)
     {
-        if (!kernelsOfEights)
-            kernelsOfEights.emplace(context, Schedule::automatic, Precision::floatGradients,
-                                    isHost() ? Smoother::automatic : Smoother::chebyshev,
-                                    isHost() ? FieldLayout::sideBySide : FieldLayout::apart);
-        eights.prepare(context, *kernelsOfEights, wanted, kEight, looseFor(tolerance));
-        return roundsLess(eights, tolerance);
+        Eights& by = roundsLess(alone.solver->roundingInFloats(), tolerance) ? inFloats : inDoubles;
+        if (!by.kernels)
+            by.kernels.emplace(context, Schedule::automatic, by.precision,
+                               isHost() ? Smoother::automatic : Smoother::chebyshev,
+                               isHost() ? FieldLayout::sideBySide : FieldLayout::apart);
+        by.prepared.prepare(context, *by.kernels, wanted, kEight, looseFor(tolerance));
+        return by.prepared;
     }
 
     /// Solves for these loads in one batch, filled up as by solveFilledUp().

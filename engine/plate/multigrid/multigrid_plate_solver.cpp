@@ -98,8 +98,8 @@ struct MultigridPlateSolver::Impl {
     Settings                 settings;
     double                   unitRigidity;
     std::uint32_t            loads;
-    double                   stiffness;            ///< see GridHierarchy [N/m]
-    double                   rounding = kRounding; ///< see MultigridPlateSolver::rounding()
+    double                   stiffness;                         ///< see GridHierarchy [N/m]
+    double                   roundingInFloats = kFloatRounding; ///< see MultigridPlateSolver
     PlatePasses              passes;
 
     Buffer                units; ///< metres per unit of the shaders' deflection, per load
@@ -389,9 +389,7 @@ struct MultigridPlateSolver::Impl {
         const double contrast = of.most / of.least;
         expectJumps(passes.foundJumps() ? jumpsOf(contrast) : Jumps::none);
         if (k.rims && jumps != Jumps::none && contrast > kRimContrast && factorRims()) expectJumps(Jumps::rims);
-        rounding = k.doubles             ? kRounding
-                   : passes.foundJumps() ? kFloatRounding * std::max(1.0, contrast / kRoundedContrast)
-                                         : kFloatRounding;
+        roundingInFloats = kFloatRounding * (passes.foundJumps() ? std::max(1.0, contrast / kRoundedContrast) : 1);
     }
 
     /// \param contrast  largest over least rigidity [1]
@@ -400,6 +398,8 @@ struct MultigridPlateSolver::Impl {
         constexpr double kStrong = 3000; // beyond it, more sweeps of the tiles cost less time than the steps they save
         return contrast > kStrong ? Jumps::strong : Jumps::some;
     }
+
+    [[nodiscard]] double rounding() const noexcept { return k.doubles ? kRounding : roundingInFloats; }
 
     /// Where a stiff island lies in the rim, floats hide how the soft part holds it, from a contrast of 1e4 on.
     bool factorRims()
@@ -465,8 +465,8 @@ struct MultigridPlateSolver::Impl {
         SolveReport report;
         report.solver        = context.processor().name;
         report.iterations    = done;
-        report.errorEstimate = std::hypot(worst(shared::kStateEstimate), rounding);
-        report.converged     = worst(shared::kStateEstimate) <= settings.tolerance && rounding <= settings.tolerance &&
+        report.errorEstimate = std::hypot(worst(shared::kStateEstimate), rounding());
+        report.converged = worst(shared::kStateEstimate) <= settings.tolerance && rounding() <= settings.tolerance &&
                            !passes.isTooSoft();
         const Lists& used = lists[std::size_t(jumps)];
         report.workUnits  = passes.workUnits(used.nestedWork) + done * passes.workUnits(used.stepsWork) / used.steps;
@@ -548,7 +548,12 @@ NodeField MultigridPlateSolver::deflectionOf(std::size_t load) const
 
 double MultigridPlateSolver::rounding() const noexcept
 {
-    return impl_->rounding;
+    return impl_->rounding();
+}
+
+double MultigridPlateSolver::roundingInFloats() const noexcept
+{
+    return impl_->roundingInFloats;
 }
 
 MultigridPlateSolver::CommandCounts MultigridPlateSolver::commands()

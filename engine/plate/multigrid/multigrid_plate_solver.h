@@ -147,6 +147,8 @@ public:
     /// Returns the error that rounding leaves with the present rigidity, relative in the energy norm [1]. Where a
     /// rigidity jumps and conjugate gradients are in floats, it grows with the contrast.
     [[nodiscard]] double rounding() const noexcept;
+    /// Returns what it would be if conjugate gradients were in floats [1].
+    [[nodiscard]] double roundingInFloats() const noexcept;
 
     /// The commands of the lists; each waits for the one before it.
     struct CommandCounts {
