@@ -389,6 +389,13 @@ std::vector<SceneKey> materialKeys()
     return keys;
 }
 
+void readHeld(S& scene, const V& given)
+{
+    const bool isWord = !given.text.starts_with('{') && !given.text.starts_with('[');
+    if (isWord && given.text != "own" && given.text != "none") given.refuse();
+    scene.held = parseHeld(given.text, given.what);
+}
+
 /// Returns the key of the patch window: a number, or the object's.
 SceneKey windowKey(const Control& control)
 {
@@ -435,7 +442,7 @@ std::vector<SceneKey> patchKeys()
          .form         = kHeldForm,
          .schema       = std::string(heldSchema()),
          .decidesCloud = true,
-         .read         = [](S& s, const V& v) { s.held = parseHeld(v.text, v.what); },
+         .read         = readHeld,
          .write        = [](const S& s) { return heldJson(s.held); }},
         countKey(
             {.name    = "cells",

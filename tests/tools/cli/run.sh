@@ -322,6 +322,8 @@ bad 'a firmware that is not needed' 'with --falcon-cold only' run scene.json --h
 bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --falcon-counts nan
 bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
 bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
+bad 'no hand at all' '--hand foo: there is no such hand or file; hands: press, circle, scan' run scene.json --hand foo
+grep -q 'mouse' err.txt && complain "run offers a hand that needs a window: $(cat err.txt)" || passed=$((passed + 1))
 bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
 bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
 good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
@@ -450,8 +452,14 @@ for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; d
 done
 
 # --- bad usage
-bad 'unknown option' 'frobnicate' touch sample:skin --frobnicate
+bad 'unknown option' 'unknown option --frobnicate; see palpate touch --help' touch sample:skin --frobnicate
+bad 'a slip in an option' 'palpate touch: unknown option --materal; did you mean --material?' touch sample:skin --materal skin
+bad 'a word too many' 'found "0.5N" where no further word is expected' touch sample:skin 0.5N
+bad 'a slip in a command' 'did you mean touch?' tuch sample:skin
 bad 'unknown sample' 'palm' touch sample:elbow
+bad 'a slip in a sample' 'did you mean "skin"?' touch sample:skni
+bad 'a side that is named twice' '--edges: expected each side once, found "x0=free" and "x0=clamped"; omit one' touch sample:skin --edges x0=free,x0=clamped
+bad 'held by a word' '--held: expected' touch sample:skin --held foo
 bad 'unknown unit' 'parsec' info skin.ply --length-unit parsec
 bad 'unknown preset' 'paper' touch sample:skin --preset rabbit
 bad 'unknown map' 'gall-peters' touch sample:skin --map mercator
