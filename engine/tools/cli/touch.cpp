@@ -14,6 +14,7 @@
 #include "engine/pipeline/presets.h"
 #include "engine/pipeline/press.h"
 #include "engine/session/hand_path.h"
+#include "engine/session/scene_keys.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/patch_json.h"
@@ -203,6 +204,18 @@ void refuseOverflow(const nlohmann::json& report)
             throw Error(std::string(key) + " is not finite; check the stiffness, --thickness and --force");
 }
 
+/// Says who took over, and where that is the reference what may spare its time.
+void tellTakeover(std::string sentence, const Patch& patch, double tolerance)
+{
+    constexpr double kLong = 2000, kTenfold = 10, kLoosest = 0.01; // [ms]; tolerances [1]
+    const double     time  = patch.times.prepare + patch.times.solve;
+    const double     loose = std::min(kTenfold * tolerance, kLoosest);
+    if (!sentence.empty() && patch.report.solver == PlateSolver::kReference && time > kLong && loose > tolerance)
+        sentence += "; that took " + formatQuantity(1e-3 * time, "s") + ", and a --tolerance of " + plainNumber(loose) +
+                    " may leave it to the multigrid solver";
+    sayTakeover(sentence);
+}
+
 void touch(const TouchOptions& options)
 {
     Scene                scene    = options.source.load();
@@ -215,7 +228,7 @@ void touch(const TouchOptions& options)
     PlateSolver   solver          = openSolver(scene.solver);
     const auto    told            = solver.counts().takeovers;
     const Patch   patch           = deform(object, contact, settings, solver);
-    sayTakeover(solver.takeoverSince(told, patch.report.solver));
+    tellTakeover(solver.takeoverSince(told, patch.report.solver), patch, settings.tolerance);
     demandDeformed(patch);
 
     nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);
