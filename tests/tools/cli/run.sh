@@ -280,7 +280,11 @@ cat >scene.json <<'JSON'
  "stiffness": {"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3}}
 JSON
 good 'run' run scene.json --clock virtual --seconds 0.5 --record session --json
-for key in '"ticks": 500' '"fault": "none"' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
+for key in '"ticks": 500' '"fault": "none"' '"ticks_coming_on"' '"max_whole_force_N": null' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
+good 'a session that ends before its force is whole' run scene.json --clock virtual --hand press --seconds 1
+holds 'all of it was never felt: take more --seconds'
+good 'a longer one' run scene.json --clock virtual --hand press --seconds 4
+holds 'all of it was at most'
 good 'replay' replay session --compare
 holds 'equal to the bit'
 good 'a table of a session' export session --csv session.csv
