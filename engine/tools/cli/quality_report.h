@@ -33,6 +33,7 @@ struct QualityReport {
     std::string  refusal{};     ///< why nothing of it is touched; empty if it is
     /// Over which dents die away by themselves; empty: they do not, or the theory is not a shell's.
     std::optional<DentLengths> dents{};
+    std::string                whyWindow{}; ///< whyDentWindow()
 };
 
 [[nodiscard]] QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene);

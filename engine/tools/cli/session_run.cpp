@@ -11,6 +11,7 @@
 #include "engine/core/counted.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/session/failure_teller.h"
 #include "engine/session/interrupt.h"
@@ -238,9 +239,12 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         throw Error("--hand " + o.hand.hand + ": a person holds it, in real time; omit --clock virtual");
 
     SessionRun run;
-    run.solver   = deformation.plateSolver().name();
-    run.folder   = o.record;
-    run.notes    = hand.notes;
+    run.solver = deformation.plateSolver().name();
+    run.folder = o.record;
+    run.notes  = hand.notes;
+    if (scene.patch.theory == Theory::plate) // shells have auto by themselves, and their patches' warnings
+        if (std::string why = whyDentWindow(loaded.object, scene.patch); !why.empty())
+            run.notes.push_back("the patch window is " + why);
     run.warnings = assumptions(scene, loaded.report);
     for (const auto& more : {warningsOf(scene, loaded.object), hand.warnings})
         run.warnings.insert(run.warnings.end(), more.begin(), more.end());
@@ -258,7 +262,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
                              deformation.firstLaw()};
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
-    if (!o.blind) say(hand.notes);
+    if (!o.blind) say(run.notes);
     std::vector<TickStream*> outlets;
     for (const auto& stream : streams) outlets.push_back(stream.get());
     SessionTap   tap(recording.get(), std::move(outlets));

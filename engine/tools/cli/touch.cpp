@@ -11,6 +11,7 @@
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/presets.h"
 #include "engine/pipeline/press.h"
 #include "engine/session/hand_path.h"
@@ -66,6 +67,8 @@ void printWindow(const nlohmann::json& window)
         std::printf("%zu nodes without a point nearby", window["nodes_without_point"].get<std::size_t>());
     if (const auto held = window["nodes_held"].get<std::size_t>()) std::printf(", %zu held", held);
     std::printf("\n");
+    if (!window["chosen"].is_null())
+        std::printf("  window chosen      %s\n", window["chosen"].get<std::string>().c_str());
 }
 
 void printShell(const nlohmann::json& shell)
@@ -223,6 +226,7 @@ void touch(const TouchOptions& options)
     const double         force    = forceOf(options.force);
     const LoadedObject   loaded   = options.source.loadObject(scene);
     const SoftObject&    object   = loaded.object;
+    const std::string    why      = whyDentWindow(object, scene.patch);
     scene.patch                   = settledFor(object, scene.patch);
     const Contact contact         = contactOf(scene, object);
     PlateSolver   solver          = openSolver(scene.solver);
@@ -233,7 +237,8 @@ void touch(const TouchOptions& options)
 
     nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);
     refuseOverflow(report);
-    report["cloud"] = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
+    report["window"]["chosen"] = why.empty() ? nlohmann::json(nullptr) : nlohmann::json(why);
+    report["cloud"]            = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
     for (std::string& line : cloudWarnings(scene, object.cloud(), loaded.report))
         report["warnings"].push_back(std::move(line));
     report["preset"] = name(scene.preset);

@@ -476,6 +476,10 @@ bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --pla
 good 'a file without a place is touched where it comes nearest to the viewer' touch skin.ply --window 40mm --cells 32 --json
 tr -d ' \n' <out.txt >flat.txt
 grep -q '"point":\[-*0.00[0-9]*,-*0.00[0-9]*,0.001[0-9]*\]' flat.txt && passed=$((passed + 1)) || complain "not the top of the wart: $(grep -A4 '"point"' out.txt)"
+good 'a window that is left to a plate without a foundation' touch sample:sheet --points 5000 --cells 16 --foundation 0 --window auto
+holds 'window chosen      auto: 60.0 mm, the width without auto, because nothing ends the dents of a plate without a foundation'
+good 'a session says so too' run sample:sheet --points 5000 --cells 16 --foundation 0 --window auto --clock virtual --seconds 0.1 --json
+holds 'the patch window is auto: 60.0 mm'
 bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolerance 1e-12
 bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
 bad 'peers on an even grid' 'multiple of 4' bench --nodes 64
