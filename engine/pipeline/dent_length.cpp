@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/curvature_sites.h"
@@ -58,12 +57,8 @@ std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& setting
         }
         const auto found = faceCurvature(object, object.positions()[point], object.survey().normal(point), radius);
         if (!found) continue;
-        const glm::dmat3& t       = found->tensor;
-        const double      trace   = t[0][0] + t[1][1] + t[2][2];
-        double            squares = 0; // of all its numbers: the sum of the squared principal curvatures
-        for (int i = 0; i < 3; ++i) squares += glm::dot(t[i], t[i]);
-        const double apart = std::sqrt(std::max(0.0, 2 * squares - trace * trace));
-        bends.push_back({point, (trace * trace - squares) / 2, (std::abs(trace) + apart) / 2, area});
+        const auto [larger, smaller] = principalOf(*found);
+        bends.push_back({point, larger * smaller, std::abs(larger), area});
     }
     return bends;
 }

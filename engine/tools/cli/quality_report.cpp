@@ -13,6 +13,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/curvature_doubt.h"
 #include "engine/tools/plot/svg.h"
 #include "engine/tools/render/cloud_figure.h"
 
@@ -153,7 +154,8 @@ QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded,
             object.cloud().bounds().diagonal(),
             {},
             isShell ? dentLengths(object, scene.patch) : std::nullopt,
-            whyDentWindow(object, scene.patch)};
+            whyDentWindow(object, scene.patch),
+            isShell ? sparseForCurvature(object) : ""};
 }
 
 std::vector<std::string> meaningForTouch(const QualityReport& r)
@@ -177,6 +179,7 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
         said.push_back(onDents(r));
     else if (!r.whyWindow.empty())
         said.push_back("the patch window is " + r.whyWindow);
+    if (!r.sparse.empty()) said.push_back(r.sparse);
     if (q.noisy95 > kNoisySpacings) said.push_back(onNoise(q));
     if (q.noise > r.fingertip / 4)
         said.push_back(

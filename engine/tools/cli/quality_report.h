@@ -34,6 +34,7 @@ struct QualityReport {
     /// Over which dents die away by themselves; empty: they do not, or the theory is not a shell's.
     std::optional<DentLengths> dents{};
     std::string                whyWindow{}; ///< whyDentWindow()
+    std::string                sparse{};    ///< sparseForCurvature(), of shells
 };
 
 [[nodiscard]] QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene);

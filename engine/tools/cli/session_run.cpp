@@ -11,6 +11,7 @@
 #include "engine/core/counted.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/curvature_doubt.h"
 #include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/session/failure_teller.h"
@@ -33,10 +34,12 @@ namespace {
 std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object)
 {
     try {
-        const HandPlace place = handPlace(scene, object);
-        PlateSolver     host("host");
-        const Patch     patch = deform(object, {place.point, place.outward}, scene.patch, host);
-        return warnings(patch, scene.patch, 0);
+        const HandPlace          place = handPlace(scene, object);
+        PlateSolver              host("host");
+        const Patch              patch = deform(object, {place.point, place.outward}, scene.patch, host);
+        std::vector<std::string> said  = warnings(patch, scene.patch, 0);
+        for (std::string& line : curvatureDoubts(object, patch)) said.push_back(std::move(line));
+        return said;
     } catch (const Error& error) { // a hand from a file may work elsewhere
         return {std::string("nothing can be felt at the scene's place: ") + error.what()};
     }

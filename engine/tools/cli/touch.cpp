@@ -10,6 +10,7 @@
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/curvature_doubt.h"
 #include "engine/pipeline/deform.h"
 #include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/presets.h"
@@ -239,6 +240,7 @@ void touch(const TouchOptions& options)
     refuseOverflow(report);
     report["window"]["chosen"] = why.empty() ? nlohmann::json(nullptr) : nlohmann::json(why);
     report["cloud"]            = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
+    for (std::string& line : curvatureDoubts(object, patch)) report["warnings"].push_back(std::move(line));
     for (std::string& line : cloudWarnings(scene, object.cloud(), loaded.report))
         report["warnings"].push_back(std::move(line));
     report["preset"] = name(scene.preset);
