@@ -327,7 +327,7 @@ bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --fa
 bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
 bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
 bad 'no hand at all' '--hand foo: there is no such hand or file; hands: press, circle, scan' run scene.json --hand foo
-grep -q 'mouse' err.txt && complain "run offers a hand that needs a window: $(cat err.txt)" || passed=$((passed + 1))
+grep -q ' mouse' err.txt && complain "run offers a hand that needs a window: $(cat err.txt)" || passed=$((passed + 1))
 bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
 bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
 good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
