@@ -88,7 +88,8 @@ TEST(CurvatureDoubt, TheBiasIsThatOfFitsOfSparsePoints)
                 std::printf("  %s, %5d %s points: fits of %.2f radii, %4.1f %% too strong, said %4.1f %%\n",
                             shape == Shape::sphere ? "sphere" : "cylinder", count, random ? "random" : "even",
                             patch.curvature->radius / kRadius, 100 * found, 100 * said);
-                EXPECT_NEAR(found, said, 0.005 + 0.1 * said) << "half a per cent of the curvature, and a tenth of the bias";
+                EXPECT_NEAR(found, said, 0.005 + 0.1 * said)
+                    << "half a per cent of the curvature, and a tenth of the bias";
             }
 }
 
