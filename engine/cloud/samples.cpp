@@ -5,10 +5,12 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
 #include "engine/core/uniform.h"
 
 namespace palp {
@@ -251,12 +253,16 @@ const std::array<Shape, 8>& shapes()
 
 const Shape& shapeNamed(std::string_view name)
 {
-    std::string known;
+    std::string                   listed;
+    std::vector<std::string_view> known;
     for (const Shape& shape : shapes()) {
         if (shape.sample.name == name) return shape;
-        known += (known.empty() ? "" : ", ") + std::string(shape.sample.name);
+        listed += (listed.empty() ? "" : ", ") + std::string(shape.sample.name);
+        known.emplace_back(shape.sample.name);
     }
-    throw Error("unknown sample \"" + std::string(name) + "\"; samples: " + known);
+    const auto meant = nearestName(name, known);
+    throw Error("unknown sample \"" + std::string(name) + "\"; " +
+                (meant ? "did you mean \"" + std::string(*meant) + "\"? " : "") + "samples: " + listed);
 }
 
 } // namespace

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
-#include <glm/mat3x3.hpp>
 
+#include "engine/core/quantity.h"
 #include "engine/pipeline/detail/curvature_sites.h"
 
 namespace palp {
@@ -21,7 +22,24 @@ struct Bend {
     std::uint32_t point    = 0; ///< of the object
     double        gaussian = 0; ///< curvature [1/m^2]
     double        largest  = 0; ///< of the principal curvatures, by size [1/m]
+    double        area     = 0; ///< that it stands for beside the others: the point's own [m^2]
 };
+
+/// A value and how much it counts.
+struct Weighed {
+    double value = 0, weight = 0;
+};
+
+/// Returns the value up to which a share of all the weight lies.
+double quantileOf(std::vector<Weighed> values, double share)
+{
+    std::ranges::sort(values, {}, &Weighed::value);
+    double left = 0;
+    for (const Weighed& each : values) left += share * each.weight;
+    for (const Weighed& each : values)
+        if ((left -= each.weight) < 0) return each.value;
+    return values.back().value;
+}
 
 /// Returns how a shell bends at places spread evenly over the object, where its points determine it; a plate does not.
 std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& settings)
@@ -31,50 +49,101 @@ std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& setting
     const std::size_t places = std::min(kPlaces, object.size());
     std::vector<Bend> bends;
     for (std::size_t k = 0; k < places; ++k) {
-        const auto point = std::uint32_t((2 * k + 1) * object.size() / (2 * places));
+        const auto   point = std::uint32_t((2 * k + 1) * object.size() / (2 * places));
+        const double area  = object.survey().spacing(point) * object.survey().spacing(point);
         if (settings.theory != Theory::shell) {
-            bends.push_back({point});
+            bends.push_back({point, 0, 0, area});
             continue;
         }
         const auto found = faceCurvature(object, object.positions()[point], object.survey().normal(point), radius);
         if (!found) continue;
-        const glm::dmat3& t       = found->tensor;
-        const double      trace   = t[0][0] + t[1][1] + t[2][2];
-        double            squares = 0; // of all its numbers: the sum of the squared principal curvatures
-        for (int i = 0; i < 3; ++i) squares += glm::dot(t[i], t[i]);
-        const double apart = std::sqrt(std::max(0.0, 2 * squares - trace * trace));
-        bends.push_back({point, (trace * trace - squares) / 2, (std::abs(trace) + apart) / 2});
+        const auto [larger, smaller] = principalOf(*found);
+        bends.push_back({point, larger * smaller, std::abs(larger), area});
     }
     return bends;
+}
+
+/// Returns points spread evenly over the object.
+std::vector<std::uint32_t> sampleOf(const SoftObject& object)
+{
+    constexpr std::size_t      kSample = 1500;
+    std::vector<std::uint32_t> sample(std::min(kSample, object.size()));
+    for (std::size_t k = 0; k < sample.size(); ++k)
+        sample[k] = std::uint32_t((2 * k + 1) * object.size() / (2 * sample.size()));
+    return sample;
+}
+
+/// Returns the length of a dent on the foundation, with the geometric mean of the rigidity so far around the point, and at it
+/// [m].
+double meanLength(const SoftObject& object, const std::vector<std::uint32_t>& sample, std::uint32_t point, double reach,
+                  double foundation)
+{
+    const glm::dvec3 place = object.positions()[point];
+    double           sum = std::log(object.rigidity(point)), count = 1;
+    for (const std::uint32_t other : sample) {
+        if (glm::distance(object.positions()[other], place) > reach) continue;
+        sum += std::log(object.rigidity(other));
+        ++count;
+    }
+    return std::pow(std::exp(sum / count) / foundation, 0.25);
+}
+
+/// Returns foundationWindow() of all of the object.
+double foundationWindowOf(const SoftObject& object)
+{
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t point = 0; point < object.size(); ++point) {
+        const double rigidity = object.rigidity(point);
+        least                 = std::min(least, rigidity);
+        most                  = std::max(most, rigidity);
+    }
+    return foundationWindow(least, most);
 }
 
 std::optional<DentLengths> lengthsOf(const SoftObject& object, const PatchSettings& settings,
                                      const std::vector<Bend>& bends)
 {
-    const Material&     material = object.material();
-    const double        nu = material.poissonRatio, h = material.thickness;
-    std::vector<double> found; // [m]
+    // Curvature that adds less to a foundation is none; widths up to twice the median, because the poles of flat spheroids need
+    // 1.45 and the median of 48 places is right to a tenth [1].
+    constexpr double     kFlat = 1e-6, kTypical = 0.5, kFlatter = 2, kSpare = 1.05; // of the mean rigidity's width [1]
+    const Material&      material = object.material();
+    const double         nu = material.poissonRatio, h = material.thickness;
+    const double         onFoundation = settings.foundation > 0 ? kSpare * foundationWindowOf(object) : 0;
+    const auto           sample       = sampleOf(object);
+    std::vector<Weighed> lengths, widths;    // [m]
+    double               all = 0, ended = 0; // [m^2]
     for (const Bend& bend : bends) {
         // What is curved one way ends nothing, whichever side of it the fits' noise says that it bends to the other way.
-        const bool   bulges = bend.gaussian > kOneWay * bend.largest * bend.largest;
-        const double ends   = 12 * (1 - nu * nu) * (bulges ? bend.gaussian : 0) / (h * h) +
-                            settings.foundation / object.rigidity(bend.point); // [1/m^4]
-        const double length = std::pow(ends, -0.25);
-        if (length < object.cloud().bounds().diagonal()) found.push_back(length);
+        const bool   bulges    = bend.gaussian > kOneWay * bend.largest * bend.largest;
+        const double perSquare = 12 * (1 - nu * nu) / (h * h);
+        const double below     = settings.foundation / object.rigidity(bend.point); // [1/m^4]
+        const double length    = std::pow(perSquare * (bulges ? bend.gaussian : 0) + below, -0.25);
+        const bool   isFlat    = perSquare * bend.largest * bend.largest < kFlat * below;
+        all += bend.area;
+        if (!(length < object.cloud().bounds().diagonal())) continue;
+        ended += bend.area;
+        lengths.push_back({length, bend.area});
+        // What is flat feels the mean of the rigidity in its window, as the warnings count it.
+        widths.push_back({isFlat ? onFoundation * meanLength(object, sample, bend.point, onFoundation * length / 2,
+                                                             settings.foundation)
+                                 : kLocalWindow * length,
+                          bend.area});
     }
-    if (found.empty() || 2 * found.size() < bends.size()) return {};
-    std::ranges::sort(found);
-    return DentLengths{found.front(), found[found.size() / 2], found.back()};
+    if (lengths.empty() || 2 * ended < all) return {};
+    const auto [least, most] = std::ranges::minmax(lengths, {}, &Weighed::value);
+    const double widest      = std::ranges::max(widths, {}, &Weighed::value).value;
+    return DentLengths{least.value, quantileOf(lengths, kTypical), most.value,
+                       std::min(widest, kFlatter * quantileOf(widths, kTypical))};
 }
 
 /// Returns the width of a window that sags no more than it may at nearly all places [m].
-double shallowWindow(std::vector<Bend> bends)
+double shallowWindow(const std::vector<Bend>& bends)
 {
     constexpr double kNearly = 0.95; // rims and tips bend as sharply as the fits can tell [1]
     if (bends.empty()) return std::numeric_limits<double>::infinity();
-    const auto sharp = bends.begin() + std::ptrdiff_t(kNearly * double(bends.size() - 1));
-    std::ranges::nth_element(bends, sharp, {}, &Bend::largest);
-    return 8 * kMostSag / sharp->largest;
+    std::vector<Weighed> largest; // [1/m]
+    for (const Bend& bend : bends) largest.push_back({bend.largest, bend.area});
+    return 8 * kMostSag / quantileOf(std::move(largest), kNearly);
 }
 
 /// Returns the width of a square as large as the disc about a place of which the object's surface fills four fifths [m].
@@ -108,17 +177,54 @@ double filledWidth(const SoftObject& object, const std::vector<std::uint32_t>& s
 /// Returns the width up to which windows about the places in the object's middle are filled [m]: beside a border none is.
 double widthOfObject(const SoftObject& object)
 {
-    constexpr std::size_t      kSample = 1500, kEnough = 32; // points, places
-    constexpr double           kMiddle = 0.9;                // of the places less is filled at so many [1]
-    std::vector<std::uint32_t> sample(std::min(kSample, object.size()));
-    for (std::size_t k = 0; k < sample.size(); ++k)
-        sample[k] = std::uint32_t((2 * k + 1) * object.size() / (2 * sample.size()));
-    std::vector<double> widths;
+    constexpr std::size_t kEnough = 32;  // places
+    constexpr double      kMiddle = 0.9; // of the places less is filled at so many [1]
+    const auto            sample  = sampleOf(object);
+    std::vector<double>   widths;
     for (std::size_t k = 0; k < std::min(kEnough, sample.size()); ++k)
         widths.push_back(filledWidth(object, sample, object.positions()[sample[k * sample.size() / kEnough]]));
     const auto middle = widths.begin() + std::ptrdiff_t(kMiddle * double(widths.size() - 1));
     std::ranges::nth_element(widths, middle);
     return *middle;
+}
+
+/// A width, and the rest of a sentence that begins with it.
+struct Choice {
+    double      width = 0; ///< [m]
+    std::string why;
+};
+
+/// Chooses a width where dents end by themselves.
+Choice chosenBy(const DentLengths& lengths, const SoftObject& object, double least)
+{
+    const std::string reach  = "dents of this object, which die away over " + formatQuantity(lengths.typical, "m");
+    const double      filled = widthOfObject(object);
+    const double      width  = std::min(lengths.window, filled);
+    if (width < least) return {least, "four radii of the fingertip, because " + reach + ", ask for less"};
+    if (filled < lengths.window)
+        return {width, "as wide as the object is about its middle, where " + reach + ", ask for " +
+                           formatQuantity(lengths.window, "m")};
+    return {width, "as wide as " + reach + ", ask for at nearly all places"};
+}
+
+Choice chosen(const SoftObject& object, const PatchSettings& settings)
+{
+    const auto   bends = bendsOf(object, settings);
+    const double least = 4 * settings.footprintRadius;
+    // A dent that dies away hardly feels what is steep, see patch_warnings.cpp, and would feel edges that are nearer.
+    if (const auto lengths = lengthsOf(object, settings, bends)) return chosenBy(*lengths, object, least);
+    if (settings.theory == Theory::plate)
+        return {settings.window,
+                "the width without auto, because nothing ends the dents of a plate " +
+                    std::string(settings.foundation > 0 ? "on so soft a foundation" : "without a foundation") +
+                    ": this width decides what is felt; set a --window, a --foundation or, where the "
+                    "surface is curved, --theory shell"};
+    const std::string unended =
+        "because nothing ends the dents of what is curved one way, against each other or hardly at all; ";
+    const double shallow = std::max(shallowWindow(bends), least);
+    if (shallow < settings.window)
+        return {shallow, "as deep as the theory of shallow shells allows, " + unended + "see the support range"};
+    return {settings.window, "the width without auto, " + unended + "see the support range"};
 }
 
 } // namespace
@@ -130,12 +236,14 @@ std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSett
 
 double dentWindow(const SoftObject& object, const PatchSettings& settings)
 {
-    const auto   bends = bendsOf(object, settings);
-    const double least = 4 * settings.footprintRadius;
-    // A dent that dies away hardly feels what is steep, see patch_warnings.cpp, and would feel edges that are nearer.
-    if (const auto lengths = lengthsOf(object, settings, bends))
-        return std::max(std::min(lengths->window(), widthOfObject(object)), least);
-    return std::min(settings.window, std::max(shallowWindow(bends), least));
+    return chosen(object, settings).width;
+}
+
+std::string whyDentWindow(const SoftObject& object, const PatchSettings& settings)
+{
+    if (settings.windowOf != WindowOf::dent) return {};
+    const Choice choice = chosen(object, settings);
+    return "auto: " + formatQuantity(choice.width, "m") + ", " + choice.why;
 }
 
 } // namespace palp

@@ -1,6 +1,6 @@
 #pragma once
-#include <algorithm>
 #include <optional>
+#include <string>
 
 #include "engine/cloud/soft_object.h"
 #include "engine/pipeline/patch.h"
@@ -16,17 +16,26 @@ inline constexpr double kMostSag = 0.25;
 /// The lesser principal curvature over the larger up to which a surface counts as curved one way: dents then reach far [1].
 inline constexpr double kOneWay = 0.1;
 
+/// Returns the width beyond which the edges of a plate's window on a foundation are not felt, in lengths l = (D/k)^(1/4) [1].
+///
+/// 10 hold the compliance to 0.1 %, and 12 where D varies by more than 10; measured against windows of 24 l for warts.
+/// \param least, most  rigidity [N m]
+[[nodiscard]] constexpr double foundationWindow(double least, double most) noexcept
+{
+    constexpr double kVaried = 10.001; // a law from 1 to 10 is rounded at the nodes [1]
+    return most > kVaried * least ? 12 : 10;
+}
+
 /// Lengths over which dents die away by themselves on an object, at places spread evenly over it.
 struct DentLengths {
     double least = 0, typical = 0, most = 0; ///< the median and the extremes [m]
-
-    /// Returns the width of a patch window whose edges are felt nowhere but on spots flatter than most [m].
-    [[nodiscard]] double window() const noexcept { return kLocalWindow * std::min(most, 1.5 * typical); }
+    double window = 0; ///< width of a patch window whose edges are felt nowhere but on spots flatter than most [m]
 };
 
 /// Finds how far dents reach where the sheet's own stiffness, or what lies below it, ends them:
 /// l^-4 = 12 (1 - nu^2) K / h^2 + k / D, K the Gaussian curvature where the surface bulges both ways, k the foundation.
 /// \param settings  the foundation; the membrane counts only where the theory is a shell's
+/// Places count by the area around them, so that it does not matter where the points are dense.
 /// \return empty if at most places nothing ends them: the object's supports, or the window's edges, then decide
 /// \note takes milliseconds, and longer on dense clouds
 /// \thread pure
@@ -34,9 +43,13 @@ struct DentLengths {
 [[nodiscard]] std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide the patch window of WindowOf::dent is [m]: as most places of the object ask for, but no wider than the
-/// object fills in its middle, and at least four radii of the fingertip. Where nothing ends a dent it is as the settings say, but of shells no wider than kMostSag allows at all
-/// but a twentieth of the places.
+/// object fills in its middle, and at least four radii of the fingertip. Where nothing ends a dent it is as the settings say,
+/// but of shells no wider than kMostSag allows at all but a twentieth of the surface.
 /// \note as dentLengths()
 [[nodiscard]] double dentWindow(const SoftObject& object, const PatchSettings& settings);
+
+/// Returns in one sentence how wide that is and why; empty if the settings do not leave the window to the object.
+/// \note as dentLengths()
+[[nodiscard]] std::string whyDentWindow(const SoftObject& object, const PatchSettings& settings);
 
 } // namespace palp

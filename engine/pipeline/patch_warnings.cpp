@@ -15,15 +15,13 @@
 namespace palp {
 namespace {
 
-/// Returns the width beyond which the edges of a patch window on a foundation are not felt [m]; empty without one.
-///
-/// 10 characteristic lengths l = (D/k)^(1/4) hold the compliance to 0.1 %, and 12 where D varies by more than 10;
-/// measured against windows of 24 l for warts. D is the geometric mean over the window.
+/// Returns the width beyond which the edges of a patch window on a foundation are not felt [m]; empty without one. D is the
+/// geometric mean over the window.
 std::optional<double> windowWanted(const Plate& plate)
 {
     if (plate.foundation <= 0) return {};
     const Extremes found = extremesOf(plate.rigidity.values());
-    return (found.most > 10 * found.least ? 12 : 10) *
+    return foundationWindow(found.least, found.most) *
            std::pow(geometricMean(plate.rigidity.values()) / plate.foundation, 0.25);
 }
 

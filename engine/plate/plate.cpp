@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <sstream>
+#include <vector>
 
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
+#include "engine/core/nearest_name.h"
 
 namespace palp {
 namespace {
@@ -111,29 +113,41 @@ std::optional<std::string> whyFoundationIsTooSoft(const Plate& plate, const Node
                     " N m on this grid: take fewer cells, a stiffer foundation, or clamp or support a side");
 }
 
+Edge edgeNamed(std::string_view word, const std::string& what)
+{
+    if (const auto edge = valueNamed<Edge>(word)) return *edge;
+    std::vector<std::string_view> known;
+    for (const auto& edge : namesOf(Edge{})) known.emplace_back(edge.name);
+    const auto meant = nearestName(word, known);
+    throw Error(what + ": expected " + wordsOf<Edge>() + ", found \"" + std::string(word) + "\"" +
+                (meant ? "; did you mean \"" + std::string(*meant) + "\"?" : ""));
+}
+
 } // namespace
 
 PlateEdges parseEdges(std::string_view text, const std::string& what)
 {
-    const auto edgeOf = [&](std::string_view word) {
-        if (const auto edge = valueNamed<Edge>(word)) return *edge;
-        throw Error(what + ": unknown name \"" + std::string(word) + "\"; known: " + wordsOf<Edge>());
-    };
     if (text.find('=') == std::string_view::npos) {
-        const Edge all = edgeOf(text);
+        const Edge all = edgeNamed(text, what);
         return {all, all, all, all};
     }
-    PlateEdges edges;
+    constexpr std::array<std::string_view, 4> kSides{"x0", "x1", "z0", "z1"};
+    std::array<std::string_view, 4>           said; // about each side
+    std::array<Edge, 4>                       edges{};
     for (std::size_t begin = 0; begin <= text.size();) {
         const std::size_t      end  = std::min(text.find(',', begin), text.size());
-        const std::string_view part = text.substr(begin, end - begin), side = part.substr(0, 2);
-        if (part.size() < 4 || part[2] != '=' || (side != "x0" && side != "x1" && side != "z0" && side != "z1"))
+        const std::string_view part = text.substr(begin, end - begin);
+        const auto             side = std::size_t(std::ranges::find(kSides, part.substr(0, 2)) - kSides.begin());
+        if (part.size() < 4 || part[2] != '=' || side == kSides.size())
             throw Error(what + ": expected SIDE=EDGE with side x0, x1, z0 or z1, found \"" + std::string(part) + "\"");
-        Edge& edge = side == "x0" ? edges.x0 : side == "x1" ? edges.x1 : side == "z0" ? edges.z0 : edges.z1;
-        edge       = edgeOf(part.substr(3));
-        begin      = end + 1;
+        if (!said[side].empty())
+            throw Error(what + ": expected each side once, found \"" + std::string(said[side]) + "\" and \"" +
+                        std::string(part) + "\"; omit one of the two");
+        said[side]  = part;
+        edges[side] = edgeNamed(part.substr(3), what);
+        begin       = end + 1;
     }
-    return edges;
+    return {edges[0], edges[1], edges[2], edges[3]};
 }
 
 std::string edgesText(const PlateEdges& edges)

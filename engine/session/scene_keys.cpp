@@ -389,6 +389,13 @@ std::vector<SceneKey> materialKeys()
     return keys;
 }
 
+void readHeld(S& scene, const V& given)
+{
+    const bool isWord = !given.text.starts_with('{') && !given.text.starts_with('[');
+    if (isWord && given.text != "own" && given.text != "none") given.refuse();
+    scene.held = parseHeld(given.text, given.what);
+}
+
 /// Returns the key of the patch window: a number, or the object's.
 SceneKey windowKey(const Control& control)
 {
@@ -396,7 +403,8 @@ SceneKey windowKey(const Control& control)
         {.name  = "window",
          .help  = "edge of the patch window, the square of surface that bends with the finger; or object: all of the "
                   "object bends, free at its borders and held where the key held says so; or auto, which shells have: "
-                  "8 lengths over which dents of this object die away",
+                  "8 lengths over which dents of this object die away, 10 or 12 where a foundation ends them, and where "
+                  "nothing does the width without auto; palpate touch says which",
          .group = kTouch,
          .unit  = "m",
          .form  = "object, auto, or a length from 1e-6 to 100 m, such as 70 mm",
@@ -435,7 +443,7 @@ std::vector<SceneKey> patchKeys()
          .form         = kHeldForm,
          .schema       = std::string(heldSchema()),
          .decidesCloud = true,
-         .read         = [](S& s, const V& v) { s.held = parseHeld(v.text, v.what); },
+         .read         = readHeld,
          .write        = [](const S& s) { return heldJson(s.held); }},
         countKey(
             {.name    = "cells",

@@ -93,15 +93,22 @@ void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene,
     hand.device  = record.make(request);
 }
 
-/// Refuses a word that is neither a hand nor a file, but was meant for a hand with a similar name.
-void refuseSlips(const std::string& word)
+/// Refuses a word that is neither a hand nor a file.
+void refuseUnknown(const std::string& word)
 {
     if (std::filesystem::exists(word)) return;
     std::vector<std::string_view> known;
-    for (const auto& motion : namesOf(HandMotion{})) known.emplace_back(motion.name);
-    for (const DeviceRecord* record : deviceRecords()) known.push_back(record->name);
-    if (const auto meant = nearestName(word, known))
-        throw Error("--hand " + word + ": there is no such hand or file; did you mean " + std::string(*meant) + "?");
+    std::string                   listed;
+    const auto                    add = [&](std::string_view name, bool needsWindow) {
+        known.push_back(name);
+        if (!needsWindow) listed += (listed.empty() ? "" : ", ") + std::string(name);
+    };
+    for (const auto& motion : namesOf(HandMotion{})) add(motion.name, false);
+    for (const DeviceRecord* record : deviceRecords()) add(record->name, record->holder == DeviceHolder::pointer);
+    const auto meant = nearestName(word, known);
+    throw Error("--hand " + word + ": there is no such hand or file; " +
+                (meant ? "did you mean " + std::string(*meant) + "? " : "") + "hands: " + listed +
+                ", or the file of a hand's path");
 }
 
 /// Returns what a user should know of the hand before it touches: its scale, its clutch, and what it does not render.
@@ -134,7 +141,7 @@ void demandGood(const HandChoice& choice)
     if (record && record->holder == DeviceHolder::pointer)
         throw Error("--hand " + choice.hand + ": it needs a window, which this command does not open; try scan, or " +
                     "--hand " + std::string(kArmRecord.name));
-    if (!record && !valueNamed<HandMotion>(choice.hand)) refuseSlips(choice.hand);
+    if (!record && !valueNamed<HandMotion>(choice.hand)) refuseUnknown(choice.hand);
     demandOptionsOf(choice.hand, choice.options);
     if (record && record->holder != DeviceHolder::scriptedHand && choice.grip)
         throw Error("--arm: no scripted hand grips the " + choice.hand + "; omit one of the two");

@@ -12,8 +12,8 @@ namespace palp {
 void SessionSummary::add(const TickRecord& record) noexcept
 {
     const auto has   = [&](SessionFlag flag) { return (record.faults & static_cast<std::uint32_t>(flag)) != 0; };
-    const auto state = static_cast<DeviceFault>(record.device & 0xFFU);
-    if ((deviceFault == DeviceFault::none && state != DeviceFault::startingUp) || isFinal(state)) deviceFault = state;
+    const auto found = static_cast<DeviceFault>(record.device & 0xFFU);
+    if ((deviceFault == DeviceFault::none && found != DeviceFault::startingUp) || isFinal(found)) deviceFault = found;
     ++ticks;
     tick.add(record.tickTime);
     staleTicks += has(SessionFlag::stalePatch);
@@ -24,6 +24,9 @@ void SessionSummary::add(const TickRecord& record) noexcept
     mostForce = std::max(mostForce, glm::length(record.force));
     if (record.normal == glm::dvec3(0)) return;
     ++contactTicks;
+    const ForceState state = forceState(record);
+    comingOn += state == ForceState::comesOn;
+    if (state == ForceState::flows) mostWholeForce = std::max(mostWholeForce, glm::length(record.force));
     const double depth = glm::dot(record.proxy - record.hip, record.normal);
     mostDepth          = std::max(mostDepth, depth);
     if (depth > 0 && record.force == glm::dvec3(0)) {

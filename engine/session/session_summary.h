@@ -15,9 +15,11 @@ struct SessionSummary {
     std::uint64_t ticks = 0, contactTicks = 0;
     std::uint64_t patches = 0, failedPatches = 0;
     std::uint64_t staleTicks = 0, oldTable = 0, beyondTable = 0;
-    std::uint64_t beyondTheory = 0, patchless = 0;         ///< see SessionFlag
-    double        mostForce       = 0;                     ///< [N]
-    double        mostDepth       = 0;                     ///< [m] of the hand below the proxy, along the normal
+    std::uint64_t beyondTheory = 0, patchless = 0; ///< see SessionFlag
+    std::uint64_t comingOn        = 0;             ///< ticks in contact with a share of the force; see ForceState
+    double        mostForce       = 0;             ///< [N]
+    double        mostWholeForce  = 0;             ///< [N] of ticks in contact with all of the force; 0: none felt any
+    double        mostDepth       = 0;             ///< [m] of the hand below the proxy, along the normal
     double        leastCompliance = 0, mostCompliance = 0; ///< in use [m/N]; 0: never in contact
     GovernorFault fault = GovernorFault::none;             ///< the last
     /// The first, except while starting up; but one that ended the session.

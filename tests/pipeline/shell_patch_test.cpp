@@ -458,7 +458,7 @@ TEST(ShellPatch, ATipThatIsSteepKeepsNoWindowNarrow)
     PatchSettings    settings = kShell;
     settings.windowOf         = WindowOf::dent;
     settings.footprintRadius  = 2e-3;
-    const double wanted       = dentLengths(cigar, settings).value().window();
+    const double wanted       = dentLengths(cigar, settings).value().window;
     ASSERT_LT(wanted, 40e-3) << "which half of its places allow: its sides have a radius of 20 mm, its tips of 7";
     EXPECT_NEAR(settledFor(cigar, settings).window, wanted, 1e-9);
 }

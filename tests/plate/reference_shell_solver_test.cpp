@@ -10,6 +10,7 @@
 
 #include "engine/plate/load.h"
 #include "engine/plate/reference/reference_plate_solver.h"
+#include "tests/support/terminal.h"
 
 namespace palp {
 namespace {
@@ -290,6 +291,18 @@ TEST(ShearWork, IsExactWhereForcesAcrossTheSheetAreTheSameEverywhere)
         }
     expected *= 2 * (1 + kPoisson) / (5.0 / 6) * hx * hz;
     EXPECT_NEAR(shearWork(shell, w) / expected, 1, 1e-9); // rounding
+}
+
+TEST(ReferenceShellSolver, TellsATerminalOfAFactorisationThatTakesSeconds)
+{
+    const Terminal terminal;
+    if (!terminal.good()) GTEST_SKIP() << "no terminal can be made here";
+
+    static_cast<void>(ReferenceShellSolver(homogeneous(64, kSize, {20, 20, 0})));
+    EXPECT_EQ(terminal.text(), "");
+
+    static_cast<void>(ReferenceShellSolver(homogeneous(176, kSize, {20, 20, 0})));
+    EXPECT_EQ(terminal.text(), "\r\033[Kfactorising a shell: 31329 nodes, about 2 s\r\033[K");
 }
 
 TEST(ReferenceShellSolver, SaysWhyAShellCannotBeSolved)

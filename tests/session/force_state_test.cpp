@@ -107,6 +107,29 @@ TEST(ForceState, ASummarySaysWhyThereWasNoForce)
     EXPECT_EQ(summary.whyForceless(), "the device reported silent");
 }
 
+TEST(ForceState, ASummaryTellsForcesThatCameOnFromWholeOnes)
+{
+    TickRecord pressing;
+    pressing.normal  = {0, 0, 1};
+    pressing.hip     = {0, 0, -1e-3};
+    pressing.force   = {0, 0, 0.3};
+    pressing.actions = bit(GovernorAction::engaging);
+    SessionSummary summary;
+    summary.add(pressing);
+    EXPECT_EQ(summary.comingOn, 1U);
+    EXPECT_EQ(summary.mostForce, 0.3);
+    EXPECT_EQ(summary.mostWholeForce, 0) << "none was whole";
+    pressing.actions = 0;
+    pressing.force   = {0, 0, 0.2};
+    summary.add(pressing);
+    TickRecord away; // before the surface forces may come on as they like
+    away.actions = bit(GovernorAction::engaging);
+    summary.add(away);
+    EXPECT_EQ(summary.comingOn, 1U);
+    EXPECT_EQ(summary.mostForce, 0.3);
+    EXPECT_EQ(summary.mostWholeForce, 0.2);
+}
+
 /// Down to the wire of an emulated Falcon: blue while the governor waits, green once forces may flow, blue after
 /// the end.
 TEST(ForceState, TheLightOfAFalconFollowsTheGovernor)

@@ -301,6 +301,13 @@ TEST(Scene, EachBadValueIsRefusedWithKeyExpectationAndFinding)
         {R"("dynamic_friction": 0.9)", {"key \"dynamic_friction\"", "static_friction"}},
         {R"("footprint_radius": 0.1)", {"key \"footprint_radius\"", "window"}},
         {R"("cells": 32, "cells": 64)", {"\"cells\"", "twice"}},
+        {R"("edges": "x0=free,z1=clamped,x0=supported")",
+         {"s.json: key \"edges\": expected each side once", "found \"x0=free\" and \"x0=supported\"", "omit one"}},
+        {R"("edges": {"x0": "free", "x0": "supported"})", {"\"x0\"", "twice"}},
+        {R"("edges": "clampd")",
+         {"key \"edges\": expected clamped, supported, free or guided", "found \"clampd\"",
+          "did you mean \"clamped\"?"}},
+        {R"("held": "foo")", {"key \"held\": expected", "own", "found \"foo\""}},
     };
     for (const auto& [more, words] : cases) EXPECT_TRUE(says(refusal(more), words)) << more;
 }
@@ -310,6 +317,7 @@ TEST(Scene, FlagsAndVariablesAreRefusedUnderTheirOwnNames)
     EXPECT_TRUE(says(refusal("", overrides({{"thickness", "-4mm"}})), {"--thickness: expected a length", "-4mm"}));
     EXPECT_TRUE(says(refusal("", overrides({{"static_friction", ""}})), {"--static-friction: expected a value"}));
     EXPECT_TRUE(says(refusal("", overrides({}, {{"PALPATE_MAX_FORCE", "lots"}})), {"PALPATE_MAX_FORCE", "lots"}));
+    EXPECT_TRUE(says(refusal("", overrides({{"edges", "x0=free,x0=free"}})), {"--edges: expected each side once"}));
     EXPECT_TRUE(
         says(refusal("", overrides({}, {{"PALPATE_CLOUD", "sample:skni"}})), {"PALPATE_CLOUD", "skni", "skin"}));
 }

@@ -135,6 +135,17 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
     }
 }
 
+std::pair<double, double> principalOf(const LocalCurvature& fit) noexcept
+{
+    const glm::dmat3& t       = fit.tensor;
+    const double      trace   = t[0][0] + t[1][1] + t[2][2];
+    double            squares = 0; // of all its numbers: the sum of the squared principal curvatures
+    for (int i = 0; i < 3; ++i) squares += glm::dot(t[i], t[i]);
+    const double apart  = std::sqrt(std::max(0.0, 2 * squares - trace * trace));
+    const double larger = std::copysign((std::abs(trace) + apart) / 2, trace);
+    return {larger, trace - larger};
+}
+
 std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung, FitsFor what)
 {
     const double     radius = rungRadius(rung);

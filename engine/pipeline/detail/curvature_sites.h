@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/chart/curvature_field.h"
@@ -26,5 +27,8 @@ struct LaidPoints {
 /// Returns the curvature of one face of the object about a place, within a radius [m]; empty where the points determine none.
 [[nodiscard]] std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
                                                           const glm::dvec3& outward, double radius);
+
+/// Returns the principal curvatures of a fit [1/m], the larger by size first.
+[[nodiscard]] std::pair<double, double> principalOf(const LocalCurvature& fit) noexcept;
 
 } // namespace palp

@@ -1,7 +1,11 @@
 #include "engine/plate/reference/reference_shell_solver.h"
 
+#include <cmath>
+#include <string>
+
 #include <Eigen/SparseCholesky>
 
+#include "engine/core/progress.h"
 #include "engine/plate/reference/detail/shell_unknowns.h"
 
 namespace palp {
@@ -30,7 +34,14 @@ struct ReferenceShellSolver::Impl {
     }
 };
 
-ReferenceShellSolver::ReferenceShellSolver(const Shell& shell) : impl_(std::make_unique<Impl>(shell)) {}
+ReferenceShellSolver::ReferenceShellSolver(const Shell& shell)
+{
+    const std::size_t nodes = shell.bending.grid.nodes();
+    Progress          progress("factorising a shell");
+    const int         seconds = int(10 * std::pow(double(nodes) / (257 * 257), 2)); // measured on one core
+    if (seconds >= 2) progress.lasts(std::to_string(nodes) + " nodes, about " + std::to_string(seconds) + " s");
+    impl_ = std::make_unique<Impl>(shell);
+}
 
 ReferenceShellSolver::~ReferenceShellSolver()                                          = default;
 ReferenceShellSolver::ReferenceShellSolver(ReferenceShellSolver&&) noexcept            = default;

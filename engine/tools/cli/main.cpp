@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "engine/compute/context.h"
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
+#include "engine/core/nearest_name.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/manual.h"
 #include "engine/tools/cli/version.h"
@@ -45,15 +47,42 @@ int complain(const std::string& sentence, int code)
     return code;
 }
 
+std::string didYouMean(const std::string& word, const std::vector<std::string>& known)
+{
+    const auto meant = palp::nearestName(word, std::vector<std::string_view>(known.begin(), known.end()));
+    return meant ? "; did you mean " + std::string(*meant) + "?" : "";
+}
+
 /// Names an unknown command, where the library would only say that some command is required.
 void refuseUnknownCommand(const CLI::App& app, const std::string& name)
 {
-    std::string known;
+    std::vector<std::string> known;
+    std::string              listed;
     for (const CLI::App* command : app.get_subcommands({})) {
         if (name.starts_with('-') || command->get_name() == name) return;
-        known += (known.empty() ? "" : ", ") + command->get_name();
+        known.push_back(command->get_name());
+        listed += (listed.empty() ? "" : ", ") + command->get_name();
     }
-    throw palp::Error("unknown command \"" + name + "\"; known: " + known + "; see --help");
+    throw palp::Error("unknown command \"" + name + "\"" + didYouMean(name, known) + "; known: " + listed +
+                      "; see --help");
+}
+
+/// Returns a sentence about the first option that a command does not know, or else about words that it has no use for.
+std::string onUnknownWords(const CLI::App& app)
+{
+    const auto               commands = app.get_subcommands();
+    const CLI::App&          command  = commands.empty() ? app : *commands.front();
+    std::vector<std::string> known;
+    const std::string        of = commands.empty() ? "palpate" : "palpate " + command.get_name();
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    std::string unused;
+    for (const std::string& word : app.remaining(true)) {
+        if (word.size() > 1 && word.front() == '-')
+            return of + ": unknown option " + word + didYouMean(word, known) + "; see " + of + " --help";
+        unused += (unused.empty() ? "" : " ") + word;
+    }
+    return of + ": found \"" + unused + "\" where no further word is expected; see " + of + " --help";
 }
 
 /// Refuses options that are given an empty value.
@@ -179,6 +208,8 @@ int runProgram(int argumentCount, char** arguments)
         if (words.size() > 1) refuseUnknownCommand(app, words[1]);
         app.parse(int(words.size()), words.data());
         if (!printed()) return complain(kUnprinted, kBadInput);
+    } catch (const CLI::ExtrasError&) {
+        return complain(onUnknownWords(app), kBadInput);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return printHelp(app, error); // or --version
         return complain(std::string(error.what()) + "; see --help", kBadInput);

@@ -13,6 +13,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/curvature_doubt.h"
 #include "engine/tools/plot/svg.h"
 #include "engine/tools/render/cloud_figure.h"
 
@@ -107,7 +108,9 @@ std::string onDents(const QualityReport& r)
     std::snprintf(widths, sizeof widths, "%.1f", r.window / r.dents->typical);
     return "dents of this shell die away over " + metres(r.dents->typical) + " (" + metres(r.dents->least) + " to " +
            metres(r.dents->most) + "); the patch window of " + metres(r.window) + " is " + widths + " of these wide" +
-           (r.window < 0.95 * r.dents->window() ? ", so that its edges are felt: set window to auto" : "");
+           (r.window >= 0.95 * r.dents->window ? ""
+            : r.whyWindow.empty()              ? ", so that its edges are felt: set window to auto"
+                                               : ", so that its edges are felt: the object is no wider");
 }
 
 std::vector<double> noiseInSpacings(const SurfaceSurvey& survey, std::size_t points)
@@ -150,7 +153,9 @@ QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded,
             settledFor(object, scene.patch).window,
             object.cloud().bounds().diagonal(),
             {},
-            isShell ? dentLengths(object, scene.patch) : std::nullopt};
+            isShell ? dentLengths(object, scene.patch) : std::nullopt,
+            whyDentWindow(object, scene.patch),
+            isShell ? sparseForCurvature(object) : ""};
 }
 
 std::vector<std::string> meaningForTouch(const QualityReport& r)
@@ -170,7 +175,11 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
             "the patch window of " + metres(r.window) +
             " holds fewer than 9 points where the points are sparse: nothing can be felt there; set --window to " +
             metres(2 * kFewestAcross * q.spacing.high) + " or more");
-    if (r.dents) said.push_back(onDents(r));
+    if (r.dents)
+        said.push_back(onDents(r));
+    else if (!r.whyWindow.empty())
+        said.push_back("the patch window is " + r.whyWindow);
+    if (!r.sparse.empty()) said.push_back(r.sparse);
     if (q.noisy95 > kNoisySpacings) said.push_back(onNoise(q));
     if (q.noise > r.fingertip / 4)
         said.push_back(

@@ -33,6 +33,8 @@ struct QualityReport {
     std::string  refusal{};     ///< why nothing of it is touched; empty if it is
     /// Over which dents die away by themselves; empty: they do not, or the theory is not a shell's.
     std::optional<DentLengths> dents{};
+    std::string                whyWindow{}; ///< whyDentWindow()
+    std::string                sparse{};    ///< sparseForCurvature(), of shells
 };
 
 [[nodiscard]] QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene);

@@ -17,6 +17,16 @@ nlohmann::json durations(const DurationHistogram& of)
             {"max_s", of.most()}};
 }
 
+/// Returns what the governor's engagement took from the forces, as a sentence.
+std::string onComingOn(const SessionSummary& s)
+{
+    return "in " + std::to_string(s.comingOn) +
+           " of the ticks in contact the force was coming on, from nothing to all in 1.5 s, and less than the object "
+           "gives; " +
+           (s.mostWholeForce > 0 ? "all of it was at most " + formatQuantity(s.mostWholeForce, "N")
+                                 : "all of it was never felt: take more --seconds");
+}
+
 } // namespace
 
 nlohmann::json jsonOf(const SessionSummary& s)
@@ -33,7 +43,9 @@ nlohmann::json jsonOf(const SessionSummary& s)
             {"ticks_without_force", s.forceless},
             {"why_without_force", s.forceless > 0 ? nlohmann::json(s.whyForceless()) : nlohmann::json(nullptr)},
             {"last_failure", s.why.empty() ? nlohmann::json(nullptr) : nlohmann::json(s.why)},
+            {"ticks_coming_on", s.comingOn},
             {"max_force_N", s.mostForce},
+            {"max_whole_force_N", s.mostWholeForce > 0 ? nlohmann::json(s.mostWholeForce) : nlohmann::json(nullptr)},
             {"max_depth_m", s.mostDepth},
             {"compliance_min_m_per_N", s.leastCompliance},
             {"compliance_max_m_per_N", s.mostCompliance},
@@ -53,6 +65,7 @@ void printText(const SessionSummary& s, const std::string& solver, const std::st
         std::cout << "  force at most " << formatQuantity(s.mostForce, "N") << ", depth at most "
                   << formatQuantity(s.mostDepth, "m") << ", compliance " << formatQuantity(s.leastCompliance, "m/N")
                   << " to " << formatQuantity(s.mostCompliance, "m/N") << "\n";
+    if (s.comingOn > 0) std::cout << "  " << onComingOn(s) << "\n";
     if (s.forceless > 0)
         std::cout << "  without force for " << s.forceless
                   << " ticks that pressed, the last because: " << s.whyForceless() << "\n";

@@ -11,6 +11,8 @@
 #include "engine/core/counted.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/curvature_doubt.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/session/failure_teller.h"
 #include "engine/session/interrupt.h"
@@ -32,10 +34,12 @@ namespace {
 std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object)
 {
     try {
-        const HandPlace place = handPlace(scene, object);
-        PlateSolver     host("host");
-        const Patch     patch = deform(object, {place.point, place.outward}, scene.patch, host);
-        return warnings(patch, scene.patch, 0);
+        const HandPlace          place = handPlace(scene, object);
+        PlateSolver              host("host");
+        const Patch              patch = deform(object, {place.point, place.outward}, scene.patch, host);
+        std::vector<std::string> said  = warnings(patch, scene.patch, 0);
+        for (std::string& line : curvatureDoubts(object, patch)) said.push_back(std::move(line));
+        return said;
     } catch (const Error& error) { // a hand from a file may work elsewhere
         return {std::string("nothing can be felt at the scene's place: ") + error.what()};
     }
@@ -238,9 +242,12 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         throw Error("--hand " + o.hand.hand + ": a person holds it, in real time; omit --clock virtual");
 
     SessionRun run;
-    run.solver   = deformation.plateSolver().name();
-    run.folder   = o.record;
-    run.notes    = hand.notes;
+    run.solver = deformation.plateSolver().name();
+    run.folder = o.record;
+    run.notes  = hand.notes;
+    if (scene.patch.theory == Theory::plate) // shells have auto by themselves, and their patches' warnings
+        if (std::string why = whyDentWindow(loaded.object, scene.patch); !why.empty())
+            run.notes.push_back("the patch window is " + why);
     run.warnings = assumptions(scene, loaded.report);
     for (const auto& more : {warningsOf(scene, loaded.object), hand.warnings})
         run.warnings.insert(run.warnings.end(), more.begin(), more.end());
@@ -258,7 +265,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
                              deformation.firstLaw()};
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
-    if (!o.blind) say(hand.notes);
+    if (!o.blind) say(run.notes);
     std::vector<TickStream*> outlets;
     for (const auto& stream : streams) outlets.push_back(stream.get());
     SessionTap   tap(recording.get(), std::move(outlets));

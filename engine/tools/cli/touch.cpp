@@ -10,10 +10,13 @@
 #include "engine/core/file.h"
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/curvature_doubt.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/presets.h"
 #include "engine/pipeline/press.h"
 #include "engine/session/hand_path.h"
+#include "engine/session/scene_keys.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/patch_json.h"
@@ -65,6 +68,8 @@ void printWindow(const nlohmann::json& window)
         std::printf("%zu nodes without a point nearby", window["nodes_without_point"].get<std::size_t>());
     if (const auto held = window["nodes_held"].get<std::size_t>()) std::printf(", %zu held", held);
     std::printf("\n");
+    if (!window["chosen"].is_null())
+        std::printf("  window chosen      %s\n", window["chosen"].get<std::string>().c_str());
 }
 
 void printShell(const nlohmann::json& shell)
@@ -203,6 +208,18 @@ void refuseOverflow(const nlohmann::json& report)
             throw Error(std::string(key) + " is not finite; check the stiffness, --thickness and --force");
 }
 
+/// Says who took over, and where that is the reference what may spare its time.
+void tellTakeover(std::string sentence, const Patch& patch, double tolerance)
+{
+    constexpr double kLong = 2000, kTenfold = 10, kLoosest = 0.01; // [ms]; tolerances [1]
+    const double     time  = patch.times.prepare + patch.times.solve;
+    const double     loose = std::min(kTenfold * tolerance, kLoosest);
+    if (!sentence.empty() && patch.report.solver == PlateSolver::kReference && time > kLong && loose > tolerance)
+        sentence += "; that took " + formatQuantity(1e-3 * time, "s") + ", and a --tolerance of " + plainNumber(loose) +
+                    " may leave it to the multigrid solver";
+    sayTakeover(sentence);
+}
+
 void touch(const TouchOptions& options)
 {
     Scene                scene    = options.source.load();
@@ -210,17 +227,20 @@ void touch(const TouchOptions& options)
     const double         force    = forceOf(options.force);
     const LoadedObject   loaded   = options.source.loadObject(scene);
     const SoftObject&    object   = loaded.object;
+    const std::string    why      = whyDentWindow(object, scene.patch);
     scene.patch                   = settledFor(object, scene.patch);
     const Contact contact         = contactOf(scene, object);
     PlateSolver   solver          = openSolver(scene.solver);
     const auto    told            = solver.counts().takeovers;
     const Patch   patch           = deform(object, contact, settings, solver);
-    sayTakeover(solver.takeoverSince(told, patch.report.solver));
+    tellTakeover(solver.takeoverSince(told, patch.report.solver), patch, settings.tolerance);
     demandDeformed(patch);
 
     nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);
     refuseOverflow(report);
-    report["cloud"] = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
+    report["window"]["chosen"] = why.empty() ? nlohmann::json(nullptr) : nlohmann::json(why);
+    report["cloud"]            = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
+    for (std::string& line : curvatureDoubts(object, patch)) report["warnings"].push_back(std::move(line));
     for (std::string& line : cloudWarnings(scene, object.cloud(), loaded.report))
         report["warnings"].push_back(std::move(line));
     report["preset"] = name(scene.preset);

@@ -83,7 +83,9 @@ CurvatureCrosses curvatureCrosses(const Patch& patch, std::span<const glm::dvec3
         const Frame      axes   = patch.chart.frame.carriedTo(normal);
         const glm::dvec3 reach  = half * std::abs(stroke.k) / most *
                                  (std::cos(stroke.along) * axes.east + std::sin(stroke.along) * axes.north);
-        const glm::dvec3 middle = positions[stroke.point];
+        // A hollow rises beside the stroke: its ends would lie below the surface, which hides them.
+        const double     sag    = stroke.k < 0 ? -stroke.k * glm::dot(reach, reach) / 2 : 0; // [m]
+        const glm::dvec3 middle = positions[stroke.point] + sag * normal;
         (stroke.k > 0 ? crosses.bulging : crosses.hollow).push_back({middle - reach, middle + reach});
     }
     return crosses;

@@ -33,9 +33,10 @@ struct SurfaceInput {
     std::size_t                         dots = 0; ///< number of splats, the last ones, that are dots at any detail
     std::span<const std::uint32_t>      faces;    ///< numbers of splats, three to a triangle; empty: splats are drawn
     std::span<const shared::ViewCorner> shapes;   ///< three to a triangle
-    Detail                              detail      = Detail::fine;
-    const Overlay*                      overlay     = nullptr; ///< of the picture's size; may be null
-    bool                                sameOverlay = false;   ///< to the byte, as in the picture before
+    std::size_t    shining     = 0; ///< number of shapes, the first ones, that are seen through the surface
+    Detail         detail      = Detail::fine;
+    const Overlay* overlay     = nullptr; ///< of the picture's size; may be null
+    bool           sameOverlay = false;   ///< to the byte, as in the picture before
     /// The part that differs from the picture drawn before; empty: draw all of it.
     std::optional<PixelRect> changed;
 };

@@ -76,10 +76,10 @@ void fillSplats(std::vector<shared::ViewSplat>& splats, const ViewScene& scene, 
             {glm::vec3(dot.position - origin), float(dot.radius), toEye, withAlpha(packed(dot.colour), 0.5)});
 }
 
-std::vector<shared::ViewCorner> cornersOf(const ViewScene& scene, const glm::dvec3& origin)
+std::vector<shared::ViewCorner> cornersOf(const std::vector<ShapeCorner>& shapes, const glm::dvec3& origin)
 {
     std::vector<shared::ViewCorner> corners;
-    for (const ShapeCorner& corner : shapesOf(scene))
+    for (const ShapeCorner& corner : shapes)
         corners.push_back({glm::vec3(corner.position - origin), packed(corner.colour), glm::vec3(corner.normal), 0});
     return corners;
 }
@@ -163,7 +163,9 @@ public:
         now_.input.detail = size.detail;
         now_.input.dots   = scene.dots.size();
         fillSplats(now_.splats, scene, camera, size.detail);
-        now_.shapes = cornersOf(scene, camera.target);
+        const std::vector<ShapeCorner> shapes = shapesOf(scene);
+        now_.shapes                           = cornersOf(shapes, camera.target);
+        now_.input.shining                    = std::size_t(std::ranges::count_if(shapes, &ShapeCorner::shinesThrough));
         now_.faces.clear();
         for (const Triangle& face : scene.faces) now_.faces.insert(now_.faces.end(), face.begin(), face.end());
         now_.input.frame  = frameOf(scene, camera, size, reachOf(scene, now_.shapes, camera.target));

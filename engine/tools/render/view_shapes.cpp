@@ -121,8 +121,10 @@ std::vector<ShapeCorner> shapesOf(const ViewScene& scene)
     if (scene.normal) addArrow(corners, *scene.normal, kThinner * scene.arrowRadius, kNormalColour);
     for (const ViewSegment& line : scene.outline) addLine(corners, line, scene.outlineRadius, inkOn(scene.ground));
     for (const ViewSegment& line : scene.sphere) addLine(corners, line, scene.outlineRadius, kSphereColour);
+    const std::size_t shining = corners.size();
     for (const ViewSegment& line : scene.bulging) addLine(corners, line, kStroke * scene.outlineRadius, kBulgingColour);
     for (const ViewSegment& line : scene.hollow) addLine(corners, line, kStroke * scene.outlineRadius, kHollowColour);
+    for (std::size_t n = shining; n < corners.size(); ++n) corners[n].shinesThrough = false;
     return corners;
 }
 

@@ -369,7 +369,7 @@ void VulkanSurface::record(const SurfaceInput& input)
     if (!fine && input.faces.empty()) draw(points_, points);
     if (!fine) draw(litFaces_, input.faces.size());
     draw(points_, input.dots, points);
-    draw(hiddenShapes_, input.shapes.size());
+    draw(hiddenShapes_, input.shining);
     draw(shapes_, input.shapes.size());
     if (input.overlay) draw(overlay_, kCornersOfSplat * input.overlay->tiles.size());
     draw(panel_, kCornersOfSplat * panelTiles_.size(), kCornersOfSplat * (tiles_.size() - panelTiles_.size()));

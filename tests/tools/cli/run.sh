@@ -280,7 +280,11 @@ cat >scene.json <<'JSON'
  "stiffness": {"law": "gaussian", "from": 0.3e6, "to": 3e6, "centre": [0, 0, 0], "sigma": 3e-3}}
 JSON
 good 'run' run scene.json --clock virtual --seconds 0.5 --record session --json
-for key in '"ticks": 500' '"fault": "none"' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
+for key in '"ticks": 500' '"fault": "none"' '"ticks_coming_on"' '"max_whole_force_N": null' '"samples": 500' '"p99.9_s"'; do holds "$key"; done
+good 'a session that ends before its force is whole' run scene.json --clock virtual --hand press --seconds 1
+holds 'all of it was never felt: take more --seconds'
+good 'a longer one' run scene.json --clock virtual --hand press --seconds 4
+holds 'all of it was at most'
 good 'replay' replay session --compare
 holds 'equal to the bit'
 good 'a table of a session' export session --csv session.csv
@@ -322,6 +326,8 @@ bad 'a firmware that is not needed' 'with --falcon-cold only' run scene.json --h
 bad 'counts that are no number' 'nan' run scene.json --hand falcon-emulator --falcon-counts nan
 bad 'counts without a Falcon' 'of --hand falcon' run scene.json --falcon-counts 4300
 bad 'a slip' 'did you mean falcon?' run scene.json --hand falcom
+bad 'no hand at all' '--hand foo: there is no such hand or file; hands: press, circle, scan' run scene.json --hand foo
+grep -q ' mouse' err.txt && complain "run offers a hand that needs a window: $(cat err.txt)" || passed=$((passed + 1))
 bad 'a mouse without a window' 'needs a window' run scene.json --hand mouse
 bad 'a table that is too large' '0, 1, 3, 5 or 7' run scene.json --table-size 9
 good 'units of keys' run scene.json --print-config --stiffness-cap '800 N/m' --deformation-rate 30Hz --from 1e300,0,1e300
@@ -450,8 +456,14 @@ for file in deformed.ply rigidity.npy deflection.npy rigidity.svg surface.svg; d
 done
 
 # --- bad usage
-bad 'unknown option' 'frobnicate' touch sample:skin --frobnicate
+bad 'unknown option' 'unknown option --frobnicate; see palpate touch --help' touch sample:skin --frobnicate
+bad 'a slip in an option' 'palpate touch: unknown option --materal; did you mean --material?' touch sample:skin --materal skin
+bad 'a word too many' 'found "0.5N" where no further word is expected' touch sample:skin 0.5N
+bad 'a slip in a command' 'did you mean touch?' tuch sample:skin
 bad 'unknown sample' 'palm' touch sample:elbow
+bad 'a slip in a sample' 'did you mean "skin"?' touch sample:skni
+bad 'a side that is named twice' '--edges: expected each side once, found "x0=free" and "x0=clamped"; omit one' touch sample:skin --edges x0=free,x0=clamped
+bad 'held by a word' '--held: expected' touch sample:skin --held foo
 bad 'unknown unit' 'parsec' info skin.ply --length-unit parsec
 bad 'unknown preset' 'paper' touch sample:skin --preset rabbit
 bad 'unknown map' 'gall-peters' touch sample:skin --map mercator
@@ -464,6 +476,10 @@ bad 'contact far from the cloud' 'contact' touch sample:skin --points 5000 --pla
 good 'a file without a place is touched where it comes nearest to the viewer' touch skin.ply --window 40mm --cells 32 --json
 tr -d ' \n' <out.txt >flat.txt
 grep -q '"point":\[-*0.00[0-9]*,-*0.00[0-9]*,0.001[0-9]*\]' flat.txt && passed=$((passed + 1)) || complain "not the top of the wart: $(grep -A4 '"point"' out.txt)"
+good 'a window that is left to a plate without a foundation' touch sample:sheet --points 5000 --cells 16 --foundation 0 --window auto
+holds 'window chosen      auto: 60.0 mm, the width without auto, because nothing ends the dents of a plate without a foundation'
+good 'a session says so too' run sample:sheet --points 5000 --cells 16 --foundation 0 --window auto --clock virtual --seconds 0.1 --json
+holds 'the patch window is auto: 60.0 mm'
 bad 'tolerance that 32 bits cannot give' '--tolerance' solve plate.json --tolerance 1e-12
 bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance nan
 bad 'peers on an even grid' 'multiple of 4' bench --nodes 64

@@ -218,6 +218,22 @@ TEST_P(SurfaceRendererTest, AHiddenHipShinesThroughAndTheOneInFrontIsOpaque)
     EXPECT_GT(hue(behind), hue(bare));
 }
 
+TEST_P(SurfaceRendererTest, AStrokeOfCurvatureBehindTheSurfaceIsHidden)
+{
+    const Sheet sheet;
+    ViewScene   scene   = sheet.scene();
+    const Image bare    = renderer->draw(scene, above(), small);
+    scene.outlineRadius = 0.002;
+    const auto drawn    = [&](double height) {
+        scene.bulging = {{{-0.02, 0, height}, {0.02, 0, height}}};
+        scene.hollow  = {{{0, -0.02, height}, {0, 0.02, height}}};
+        return renderer->draw(scene, above(), small);
+    };
+
+    EXPECT_EQ(drawn(-0.01).pixels, bare.pixels);
+    EXPECT_NE(drawn(0.01).pixels, bare.pixels);
+}
+
 TEST_P(SurfaceRendererTest, AValueWithoutAColourIsGrey)
 {
     const Sheet               sheet;
