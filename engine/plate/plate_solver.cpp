@@ -58,11 +58,12 @@ FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell&
     const double      loose = looseFor(tolerance);
     ShellAnswer       first = solver.solve(loads.subspan(whole, 1), std::min(drawn, loose)).front();
     const auto        rest  = solver.solve(others, loose);
+    const Shear       shear(shell);
     FootprintSolution solution;
     for (std::size_t n = 0; n < loads.size(); ++n) {
         const ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
         solution.responses.push_back(responseOf(loads[n], of.deflection));
-        solution.responses.back().work = of.work + shearWork(shell, of.deflection);
+        solution.responses.back().work = of.work + shear.workOf(of.deflection);
         if (!of.report.converged) solution.whole.report = of.report;
     }
     if (solution.whole.report.converged) solution.whole.report = first.report;
@@ -673,11 +674,12 @@ FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const F
     const auto                 began = std::chrono::steady_clock::now();
     const ReferenceShellSolver solver(shell);
     const auto                 made = std::chrono::steady_clock::now();
+    const Shear                shear(shell);
     FootprintSolution          solution;
     for (std::size_t n = 0; n < loads.size(); ++n) {
         ShellSolution of = solver.solve(loads[n].load(shell.bending.grid));
         solution.responses.push_back(responseOf(loads[n], of.deflection));
-        solution.responses.back().work += shearWork(shell, of.deflection);
+        solution.responses.back().work += shear.workOf(of.deflection);
         if (n != whole) continue;
         SolveReport& report       = solution.whole.report;
         report.solver             = kReference;

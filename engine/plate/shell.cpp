@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "compute_shaders/shared/tile_layout.h"
+
 namespace palp {
 namespace {
 
@@ -13,31 +15,23 @@ bool isFinite(const NodeField& field)
     return std::ranges::all_of(field.values(), [](double value) { return std::isfinite(value); });
 }
 
-/// What shear needs of a row of nodes: moments [N], those of twisting of the cells ahead, and how each node gives way.
+/// The moments of a row of nodes, and those of twisting of the cells ahead.
 struct RowOfMoments {
-    std::vector<double> x, z, xz, gives; ///< [N], [N], [N], [m/N]
+    std::vector<double> x, z, xz; ///< [N]
 
-    explicit RowOfMoments(int nodes)
-        : x(std::size_t(nodes)), z(std::size_t(nodes)), xz(std::size_t(nodes)), gives(std::size_t(nodes))
-    {
-    }
+    explicit RowOfMoments(int nodes) : x(std::size_t(nodes)), z(std::size_t(nodes)), xz(std::size_t(nodes)) {}
 
     /// \param i  from 0 to the last row of cells; moments on the rim are not known here
-    void fill(const Shell& shell, const NodeField& w, int i)
+    void fill(const Plate& plate, const NodeField& w, int i)
     {
-        const Plate&     plate = shell.bending;
-        const PlateGrid& g     = plate.grid;
+        const PlateGrid& g  = plate.grid;
         const double     nu = plate.poissonRatio, hx = g.spacingX, hz = g.spacingZ;
         const double     perXX = 1 / (hx * hx), perZZ = 1 / (hz * hz), perXZ = (1 - nu) / (4 * hx * hz);
         const int        n = g.nodesZ();
-        const double *   d = &plate.rigidity(i, 0), *at = &w(i, 0), *c = &shell.membraneCompliance(i, 0);
-        const double *   dAhead = d + n, *ahead = at + n;
+        const double *   d = &plate.rigidity(i, 0), *at = &w(i, 0), *dAhead = d + n, *ahead = at + n;
         for (int j = 0; j + 1 < n; ++j)
             xz[std::size_t(j)] =
                 perXZ * (d[j] + d[j + 1] + dAhead[j] + dAhead[j + 1]) * (at[j] - ahead[j] - at[j + 1] + ahead[j + 1]);
-        std::copy(c, c + n, gives.begin());
-        if (const auto& counts = shell.sheared.values(); !counts.empty())
-            for (int j = 0; j < n; ++j) gives[std::size_t(j)] *= shell.sheared(i, j);
         if (i == 0) return;
         const double* behind = at - n;
         for (int j = 1; j + 1 < n; ++j) {
@@ -49,34 +43,71 @@ struct RowOfMoments {
     }
 };
 
+/// Returns whether the rigidity jumps at a node, as it does where tiles are relaxed further (shared/tile_layout.h).
+bool jumpsAt(const NodeField& rigidity, int i, int j)
+{
+    double least = rigidity(i, j), most = least;
+    for (int di = -1; di <= 1; ++di)
+        for (int dj = -1; dj <= 1; ++dj) {
+            least = std::min(least, rigidity(i + di, j + dj));
+            most  = std::max(most, rigidity(i + di, j + dj));
+        }
+    return most > double(shared::kJump) * least;
+}
+
 } // namespace
 
-double shearWork(const Shell& shell, const NodeField& w)
+Shear::Shear(const Shell& shell) : plate_(shell.bending), alongX_(shell.bending.grid), alongZ_(shell.bending.grid)
 {
     constexpr double kShare = 5.0 / 6; // of the thickness that bears shear evenly: Reissner's [1]
-    const PlateGrid& g      = shell.bending.grid;
+    const PlateGrid& g      = plate_.grid;
+    // 1/(G h) is 2 (1 + nu) C.
+    const double unit = 2 * (1 + plate_.poissonRatio) / kShare * g.spacingX * g.spacingZ;
+    NodeField    gives(g);
+    for (int i = 1; i < g.cellsX; ++i)
+        for (int j = 1; j < g.cellsZ; ++j) {
+            const double counts = shell.sheared.values().empty() ? 1 : shell.sheared(i, j);
+            gives(i, j)         = jumpsAt(plate_.rigidity, i, j) ? -1 : unit * counts * shell.membraneCompliance(i, j);
+        }
+    const auto between = [](double a, double b) { return a < 0 || b < 0 ? 0 : (a + b) / 2; };
+    for (int i = 1; i < g.cellsX; ++i)
+        for (int j = 1; j < g.cellsZ; ++j) {
+            if (i + 1 < g.cellsX) alongX_(i, j) = between(gives(i, j), gives(i + 1, j));
+            if (j + 1 < g.cellsZ) alongZ_(i, j) = between(gives(i, j), gives(i, j + 1));
+        }
+}
+
+double Shear::workOf(const NodeField& w) const
+{
+    const PlateGrid& g    = plate_.grid;
     const double     perX = 1 / g.spacingX, perZ = 1 / g.spacingZ;
     const auto       last = std::size_t(g.cellsZ); // inner nodes come before it
     RowOfMoments     behind(g.nodesZ()), row(g.nodesZ()), ahead(g.nodesZ());
-    row.fill(shell, w, 0);
-    ahead.fill(shell, w, 1);
+    row.fill(plate_, w, 0);
+    ahead.fill(plate_, w, 1);
     double work = 0;
-    // Halfway between two inner nodes both terms of a component of div M lie at the same place. 1/(G h) is 2 (1 + nu) C.
+    // Halfway between two inner nodes both terms of a component of div M lie at the same place.
     for (int i = 1; i < g.cellsX; ++i) {
         std::swap(behind, row);
         std::swap(row, ahead);
+        const double *givesX = &alongX_(i, 0), *givesZ = &alongZ_(i, 0);
         for (std::size_t j = 1; j + 1 < last; ++j) {
             const double q = perZ * (row.z[j + 1] - row.z[j]) + perX * (row.xz[j] - behind.xz[j]);
-            work += q * q * (row.gives[j] + row.gives[j + 1]) / 2;
+            work += q * q * givesZ[j];
         }
         if (i + 1 == g.cellsX) break;
-        ahead.fill(shell, w, i + 1);
+        ahead.fill(plate_, w, i + 1);
         for (std::size_t j = 1; j < last; ++j) {
             const double q = perX * (ahead.x[j] - row.x[j]) + perZ * (row.xz[j] - row.xz[j - 1]);
-            work += q * q * (row.gives[j] + ahead.gives[j]) / 2;
+            work += q * q * givesX[j];
         }
     }
-    return work * 2 * (1 + shell.bending.poissonRatio) / kShare * g.spacingX * g.spacingZ;
+    return work;
+}
+
+double shearWork(const Shell& shell, const NodeField& w)
+{
+    return Shear(shell).workOf(w);
 }
 
 Plate membraneOf(const Shell& shell)
