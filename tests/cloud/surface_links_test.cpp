@@ -5,6 +5,7 @@
 #include <map>
 #include <random>
 #include <string>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -132,6 +133,22 @@ TEST(SurfaceLinks, DoNotDependOnWhatWasFloodedBefore)
     const SoftObject fresh(cloud), used(cloud);
     for (int n = 0; n < 40; ++n) (void)flood(used, points[std::size_t(n) * 131], 3e-3, {0, 0, 1}, 1);
     EXPECT_EQ(flood(fresh, {0, 0, 0}, 15e-3, {0, 0, 1}, 1), flood(used, {0, 0, 0}, 15e-3, {0, 0, 1}, 1));
+}
+
+TEST(SurfaceLinks, MayBeFoundByManyThreadsAtOnce)
+{
+    const Points         points = bodies().at("an ellipsoid");
+    const PointCloud     cloud(points, std::vector<double>(points.size(), 1e6), StiffnessKind::modulus);
+    const SoftObject     alone(cloud), shared(cloud);
+    const auto           place = [&](std::size_t n) { return points[n * 2477 % points.size()]; };
+    std::vector<Reached> found(8);
+    {
+        std::vector<std::jthread> threads;
+        for (std::size_t n = 0; n < found.size(); ++n)
+            threads.emplace_back([&, n] { found[n] = flood(shared, place(n), 15e-3, {0, 0, 1}, 1); });
+    }
+    for (std::size_t n = 0; n < found.size(); ++n)
+        EXPECT_EQ(found[n], flood(alone, place(n), 15e-3, {0, 0, 1}, 1)) << n;
 }
 
 TEST(SurfaceLinks, AreSharedByObjectsOfTheSamePoints)
