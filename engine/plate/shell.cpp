@@ -5,8 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "compute_shaders/shared/tile_layout.h"
-
 namespace palp {
 namespace {
 
@@ -43,37 +41,44 @@ struct RowOfMoments {
     }
 };
 
-/// Returns whether the rigidity jumps at a node, as it does where tiles are relaxed further (shared/tile_layout.h).
-bool jumpsAt(const NodeField& rigidity, int i, int j)
+/// Returns the steepest change of a field's logarithm from a node to one of the eight around it [1/m].
+double steepnessAt(const NodeField& logarithm, const PlateGrid& g, int i, int j)
 {
-    double least = rigidity(i, j), most = least;
+    double most = 0;
     for (int di = -1; di <= 1; ++di)
         for (int dj = -1; dj <= 1; ++dj) {
-            least = std::min(least, rigidity(i + di, j + dj));
-            most  = std::max(most, rigidity(i + di, j + dj));
+            if (di == 0 && dj == 0) continue;
+            const double change = std::abs(logarithm(i + di, j + dj) - logarithm(i, j));
+            most                = std::max(most, change / std::hypot(di * g.spacingX, dj * g.spacingZ));
         }
-    return most > double(shared::kJump) * least;
+    return most;
 }
 
 } // namespace
 
 Shear::Shear(const Shell& shell) : plate_(shell.bending), alongX_(shell.bending.grid), alongZ_(shell.bending.grid)
 {
-    constexpr double kShare = 5.0 / 6; // of the thickness that bears shear evenly: Reissner's [1]
-    const PlateGrid& g      = plate_.grid;
+    constexpr double kShare  = 5.0 / 6; // of the thickness that bears shear evenly: Reissner's [1]
+    constexpr double kSpread = 0.55;    // 4 / sqrt(10) over the logarithm of a contrast of 10, see the class [1]
+    const PlateGrid& g       = plate_.grid;
     // 1/(G h) is 2 (1 + nu) C.
     const double unit = 2 * (1 + plate_.poissonRatio) / kShare * g.spacingX * g.spacingZ;
-    NodeField    gives(g);
+    NodeField    gives(g), logarithm(g);
+    for (std::size_t n = 0; n < logarithm.values().size(); ++n)
+        logarithm.values()[n] = std::log(plate_.rigidity.values()[n]);
     for (int i = 1; i < g.cellsX; ++i)
         for (int j = 1; j < g.cellsZ; ++j) {
             const double counts = shell.sheared.values().empty() ? 1 : shell.sheared(i, j);
-            gives(i, j)         = jumpsAt(plate_.rigidity, i, j) ? -1 : unit * counts * shell.membraneCompliance(i, j);
+            const double C      = shell.membraneCompliance(i, j);
+            const double h =
+                std::sqrt(12 * (1 - plate_.poissonRatio * plate_.poissonRatio) * plate_.rigidity(i, j) * C);
+            const double steep = kSpread * h * steepnessAt(logarithm, g, i, j);
+            gives(i, j)        = unit * counts * C / (1 + steep);
         }
-    const auto between = [](double a, double b) { return a < 0 || b < 0 ? 0 : (a + b) / 2; };
     for (int i = 1; i < g.cellsX; ++i)
         for (int j = 1; j < g.cellsZ; ++j) {
-            if (i + 1 < g.cellsX) alongX_(i, j) = between(gives(i, j), gives(i + 1, j));
-            if (j + 1 < g.cellsZ) alongZ_(i, j) = between(gives(i, j), gives(i, j + 1));
+            if (i + 1 < g.cellsX) alongX_(i, j) = std::min(gives(i, j), gives(i + 1, j));
+            if (j + 1 < g.cellsZ) alongZ_(i, j) = std::min(gives(i, j), gives(i, j + 1));
         }
 }
 

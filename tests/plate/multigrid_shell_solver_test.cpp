@@ -282,7 +282,8 @@ TEST(ShearWork, DoesNotGrowWithTheGridWhereTheRigidityJumps)
             return shearWork(shell, w) / dot(load, w);
         };
         EXPECT_NEAR(share(128, 1) / share(64, 1), 1, 0.02) << away;
-        for (const double contrast : {10.0, 100.0, 1000.0}) // measured 1.07 to 1.26; counted across the rim 1.2 to 1.7
+        for (const double contrast :
+             {10.0, 100.0, 1000.0}) // measured 1.06 to 1.17; counted in full across the rim 1.2 to 1.7
             EXPECT_NEAR(share(128, contrast) / share(64, contrast), 1.15, 0.13) << away << ", a disc of " << contrast;
     }
 }
