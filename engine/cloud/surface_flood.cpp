@@ -102,10 +102,22 @@ void SurfaceFlood::floodByLinks()
         return true;
     };
     slots[ranks_[reached_.front()]] |= 1;
+    // A point takes the sign that most of the points before it ask for, unless its side is known: about an edge, or on the
+    // wall of a thin body, the one that came first may have a normal that says little.
+    std::vector<bool> settled(ranks_.size());
+    const auto        settle = [&](std::uint32_t i) {
+        double sum = 0;
+        for (const std::uint32_t rank : links.from(ranks_[i]))
+            if (const std::uint32_t slot = slots[rank]; slot % 2 != 0 && settled[numberOf(slot)])
+                sum += glm::dot(carried_[numberOf(slot)], carried_[i]);
+        if (sum < 0 && !(inverted_ && object_.survey().sidedOfRank(ranks_[i]))) carried_[i] = -carried_[i];
+        settled[i] = true;
+    };
     std::size_t next  = 0;
     const auto  flood = [&] {
         for (; next < reached_.size(); ++next) {
             const std::uint32_t from = reached_[next];
+            settle(from);
             for (const std::uint32_t rank : links.from(ranks_[from]))
                 if (const std::uint32_t slot = slots[rank]; slot != 0 && slot % 2 == 0)
                     (void)leads(from, numberOf(slot));

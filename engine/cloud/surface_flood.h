@@ -16,7 +16,8 @@ namespace palp {
 /// a thin object does not happen to the other.
 ///
 /// From the point nearest to the middle a flood goes from point to point, inside the ball, over steps of at most
-/// kLongestStep local spacings that run along the sheet (SurfaceLinks). The normals' sign is carried along. Points
+/// kLongestStep local spacings that run along the sheet (SurfaceLinks). The normals' sign is carried along, as
+/// most of the neighbours that were reached before ask for. Points
 /// whose side the survey knows must all face alike: so layers half a spacing apart are told apart. Around a rim that is
 /// inside the ball the flood does reach the other side, whose normals then point away. Beside a tenfold step in density
 /// it passes over one point in some thousand that has no neighbour as near as its spacing tells.
