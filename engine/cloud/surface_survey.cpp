@@ -56,6 +56,13 @@ constexpr double kSettledOnFace = 1.15;
 /// noise has 1.8.
 constexpr double kTwoFaces = 1.6;
 
+/// A ball's deviation is noise if the quietest share of its points deviates from close shapes of their own by no less than
+/// this part of it [1]: by 0.74 of Gaussian noise. About the walls of a clean thin body they deviate by nothing.
+constexpr double      kQuietShare = 0.2, kOverQuiet = 4;
+constexpr double      kClose  = 2;  ///< radius of those shapes [spacings]
+constexpr std::size_t kAsked  = 32; ///< points of a ball that are asked
+constexpr std::size_t kEnough = 8;  ///< points of which a deviation tells something
+
 constexpr double kWidest = 32; ///< largest ball of a search for noise, and for lines [spacings]
 /// Medians over the neighbours, one after the other: the noise then varies by some per cent only.
 constexpr int kMedians = 2;
@@ -96,6 +103,7 @@ private:
         double        radius = 0; ///< [m]
     };
     WideShape settledShape(std::uint32_t point);
+    bool      isNoiseEverywhere(const WideShape& wide);
     void      take(std::uint32_t point, const WideShape& wide);
 
     SurfaceSurvey&              survey_;
@@ -109,7 +117,7 @@ private:
     Neighbourhoods             neighbourhoods_;
     ShapeFitter                fitter_;
     std::vector<glm::dvec3>    away_;
-    std::vector<std::uint32_t> found_;
+    std::vector<std::uint32_t> found_, some_;
     std::vector<float>         values_;
 };
 
@@ -228,6 +236,24 @@ SurfaceSurvey::Measuring::WideShape SurfaceSurvey::Measuring::settledShape(std::
     return {};
 }
 
+/// Returns whether the deviation of the ball that was gathered last is that of most of its points. About the wall of a clean
+/// thin body two faces fit well but for the wall, in every wider ball; points off the wall do not deviate. Some points tell
+/// that, in balls too small for both faces.
+bool SurfaceSurvey::Measuring::isNoiseEverywhere(const WideShape& wide)
+{
+    if (!(wide.shape.residual > 0)) return false;
+    some_.clear();
+    for (std::size_t k = 0; k < kAsked; ++k) some_.push_back(found_[k * found_.size() / kAsked]);
+    values_.clear();
+    for (const std::uint32_t rank : some_)
+        if (const LocalShape close = shapeWithin(rank, kClose * survey_.spacings_[rank]); close.count > kEnough)
+            values_.push_back(float(close.residual));
+    if (values_.empty()) return true;
+    const auto quiet = values_.begin() + std::ptrdiff_t(double(values_.size()) * kQuietShare);
+    std::nth_element(values_.begin(), quiet, values_.end());
+    return wide.shape.residual < kOverQuiet * *quiet;
+}
+
 /// Gives a point the noise of a wide shape that was fitted about a point close to it, and notes its normal if that is a
 /// face of a thin body; the point may lie on the other one.
 void SurfaceSurvey::Measuring::take(std::uint32_t point, const WideShape& wide)
@@ -249,7 +275,8 @@ void SurfaceSurvey::Measuring::measureNoise(const RankRun& run)
     for (std::uint32_t point = run.begin; point < run.end; ++point) {
         if (!(survey_.noises_[point] > kClean * survey_.spacings_[point])) continue;
         if (++since > kTogether) {
-            last  = settledShape(point);
+            last = settledShape(point);
+            if (!isNoiseEverywhere(last)) last = {};
             since = 1;
         }
         if (last.shape.residual > 0)

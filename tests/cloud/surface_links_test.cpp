@@ -146,7 +146,7 @@ TEST(SurfaceFlood, CarriesItsSideAroundAThinClosedBox)
             turned += normal[2] > 0 ? 1 : 0;
         }
     EXPECT_GT(far, 10'000);
-    EXPECT_LT(turned, 0.06 * far) << "measured 464: none at three of the places";
+    EXPECT_EQ(turned, 0) << "464 while the walls were taken for noisy faces";
 }
 
 /// What is found first must not matter: neither the order of touches nor what they had in reach.

@@ -120,7 +120,26 @@ TEST(SurfaceSurvey, EdgesAreNoNoise)
     EXPECT_LT(double(noisy), 0.01 * double(points.size())) << "at corners a few balls do settle";
 }
 
-/// Two sheets, one over the other, closer than their points are to each other: outwards is away from the other one.
+/// About the walls of a thin box, 3 to 5 spacings high, wide balls hold two faces that fit well, and the wall as "noise".
+TEST(SurfaceSurvey, TheWallsOfACleanThinBoxAreNotNoisyAndHaveNoFaces)
+{
+    for (const int high : {3, 4, 5}) { // spacings
+        Points points;
+        for (int i = 0; i <= 60; ++i)
+            for (int j = 0; j <= 40; ++j)
+                for (int k = 0; k <= high; ++k)
+                    if (i % 60 == 0 || j % 40 == 0 || k % high == 0) points.push_back(1e-3 * glm::dvec3(i, j, k));
+        const SurfaceSurvey survey = surveyOf(points);
+        int                 noisy = 0, sided = 0;
+        for (std::size_t n = 0; n < points.size(); ++n) {
+            noisy += survey.noise(n) > 0;
+            sided += survey.sided(n);
+        }
+        EXPECT_EQ(noisy, 0) << high << " spacings";
+        EXPECT_EQ(sided, 0) << high << " spacings: as their walls tell, which are too high for layers";
+    }
+}
+
 TEST(SurfaceSurvey, TheRimOfACleanBodyIsNotNoisyAndHasNoFaces)
 {
     // Wide balls about the rim of a lobe hold both of its faces, and more of their bend the wider they are.
@@ -135,6 +154,7 @@ TEST(SurfaceSurvey, TheRimOfACleanBodyIsNotNoisyAndHasNoFaces)
     EXPECT_LT(sided, 400) << "recorded: 236; 620 with faces where there is no noise";
 }
 
+/// Two sheets, one over the other, closer than their points are to each other: outwards is away from the other one.
 TEST(SurfaceSurvey, LayersCloserThanTheirPointsFaceAwayFromEachOther)
 {
     for (const double gap : {0.5, 1.0, 2.0}) {

@@ -152,7 +152,8 @@ void fitQuadric(LocalShape& shape, std::span<const glm::dvec3> points, const Axe
     for (std::size_t i = 0; i < points.size(); i += step)
         sums.add(glm::dot(axes.u, points[i]) / radius, glm::dot(axes.v, points[i]) / radius,
                  glm::dot(axes.normal, points[i]));
-    const int              count = sums.count();
+    const int count              = sums.count();
+    shape.count                  = std::size_t(count);
     const QuadricSums::Row right = sums.right();
     const QuadricSums::Row x     = sums.matrix(kRidge).ldlt().solve(right);
     shape.u                      = axes.u;

@@ -10,12 +10,13 @@ namespace palp {
 
 /// The shape of the surface about a point, from the points around it.
 struct LocalShape {
-    glm::dvec3 normal{};         ///< [1] unit; 0 if the points determine no plane
-    double     narrow   = 0;     ///< [1] the smaller over the larger extent of the points along the surface, squared
-    double     residual = 0;     ///< [m] standard deviation of the points about the fitted quadric
-    double     tails    = 3;     ///< [1] kurtosis of the deviations, of more than 40 points: two layers have 1
-    bool       sided    = false; ///< the points form two layers, and the normal points away from the other one
-    double     apart    = 0;     ///< [m] mean distance of the two faces that fitFace() told apart; 0: it did not
+    glm::dvec3  normal{};         ///< [1] unit; 0 if the points determine no plane
+    double      narrow   = 0;     ///< [1] the smaller over the larger extent of the points along the surface, squared
+    std::size_t count    = 0;     ///< points that the quadric was fitted to
+    double      residual = 0;     ///< [m] standard deviation of the points about the fitted quadric
+    double      tails    = 3;     ///< [1] kurtosis of the deviations, of more than 40 points: two layers have 1
+    bool        sided    = false; ///< the points form two layers, and the normal points away from the other one
+    double      apart    = 0;     ///< [m] mean distance of the two faces that fitFace() told apart; 0: it did not
 
     // The quadric h = q0 + q1 a + q2 b + q3 a^2 + q4 a b + q5 b^2 [m] over a, b [radii], of points that lie nearly in a
     // plane and determine it well; then it holds for the points close to the middle one too.
