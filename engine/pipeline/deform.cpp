@@ -14,6 +14,7 @@
 #include "engine/cloud/surface_links.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/detail/coarser_grid.h"
 #include "engine/pipeline/detail/other_face.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/touched_surface.h"
@@ -577,29 +578,6 @@ void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& 
         patch.stiffening = responseOf(Footprint(unitLoad(patch, settings)), patch.stiffeningAtNodes).work;
 }
 
-/// Returns the values at the nodes of a grid of twice the spacing; none of none.
-NodeField everySecondOf(const NodeField& fine, const PlateGrid& coarse)
-{
-    if (fine.values().empty()) return {};
-    NodeField values(coarse);
-    for (int i = 0; i < coarse.nodesX(); ++i)
-        for (int j = 0; j < coarse.nodesZ(); ++j) values(i, j) = fine(2 * i, 2 * j);
-    return values;
-}
-
-/// Returns the shell on a grid of twice the spacing.
-Shell everySecondOf(const Shell& fine)
-{
-    Shell            shell  = fine;
-    const PlateGrid& grid   = fine.bending.grid;
-    const PlateGrid  coarse = {grid.cellsX / 2, grid.cellsZ / 2, 2 * grid.spacingX, 2 * grid.spacingZ};
-    shell.bending.grid      = coarse;
-    for (NodeField* field : {&shell.bending.rigidity, &shell.bending.foundationShape, &shell.membraneCompliance,
-                             &shell.curvatureX, &shell.curvatureZ, &shell.curvatureXZ, &shell.sheared})
-        *field = everySecondOf(*field, coarse);
-    return shell;
-}
-
 /// Returns whether a grid of twice the spacing carries the fingertip.
 bool hasCoarseGrid(const Patch& patch, const PatchSettings& settings)
 {
@@ -763,7 +741,10 @@ namespace {
 /// Returns the compliance on a grid of twice the spacing; empty if it cannot be solved there.
 std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
-    const Shell shell = everySecondOf(shellOf(patch));
+    Shell shell = shellOf(patch);
+    // Of an object that ends in the window every node has a sheet or none: nothing is blurred into its border.
+    if (settings.resampling == Resampling::logMean && patch.covered.values().empty()) blurAsIfCoarser(shell, patch.spacing);
+    shell = everySecondOf(shell);
     if (whyUnsolvable(shell.bending)) return {};
     const PlateGrid& grid = shell.bending.grid;
     const Footprint  finger(unitLoad(grid, settings, everySecondOf(patch.covered, grid)));

@@ -41,17 +41,21 @@ struct RowOfMoments {
     }
 };
 
-/// Returns the steepest change of a field's logarithm from a node to one of the eight around it [1/m].
-double steepnessAt(const NodeField& logarithm, const PlateGrid& g, int i, int j)
+/// Returns how steep a field is at an inner node: along either axis the root of the mean square of its slopes to both sides,
+/// which a jump to one of them enters and a smooth map to the second order [1/m].
+double steepnessAt(const NodeField& field, const PlateGrid& g, int i, int j)
 {
-    double most = 0;
-    for (int di = -1; di <= 1; ++di)
-        for (int dj = -1; dj <= 1; ++dj) {
-            if (di == 0 && dj == 0) continue;
-            const double change = std::abs(logarithm(i + di, j + dj) - logarithm(i, j));
-            most                = std::max(most, change / std::hypot(di * g.spacingX, dj * g.spacingZ));
-        }
-    return most;
+    const double own  = field(i, j);
+    const double east = field(i + 1, j) - own, west = field(i - 1, j) - own;
+    const double north = field(i, j + 1) - own, south = field(i, j - 1) - own;
+    return std::sqrt((east * east + west * west) / (2 * g.spacingX * g.spacingX) +
+                     (north * north + south * south) / (2 * g.spacingZ * g.spacingZ));
+}
+
+/// Returns what counts between two nodes: their shares bear the same force side by side.
+double between(double a, double b)
+{
+    return a > 0 && b > 0 ? 2 * a * b / (a + b) : 0;
 }
 
 } // namespace
@@ -77,8 +81,8 @@ Shear::Shear(const Shell& shell) : plate_(shell.bending), alongX_(shell.bending.
         }
     for (int i = 1; i < g.cellsX; ++i)
         for (int j = 1; j < g.cellsZ; ++j) {
-            if (i + 1 < g.cellsX) alongX_(i, j) = std::min(gives(i, j), gives(i + 1, j));
-            if (j + 1 < g.cellsZ) alongZ_(i, j) = std::min(gives(i, j), gives(i, j + 1));
+            if (i + 1 < g.cellsX) alongX_(i, j) = between(gives(i, j), gives(i + 1, j));
+            if (j + 1 < g.cellsZ) alongZ_(i, j) = between(gives(i, j), gives(i, j + 1));
         }
 }
 

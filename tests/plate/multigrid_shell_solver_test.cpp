@@ -262,9 +262,11 @@ TEST(MultigridShellSolver, RefusesWhatCannotBeSolved)
     EXPECT_THROW((void)solved(shell, fingertip(square(17)), 1e-3), ContractViolation);
 }
 
-/// Moments along the rim jump there. On a rim that goes in steps the forces across the sheet would grow as the grid gets
-/// finer, and did: 1.9, 2.5 and 4.2 % of the work in the middle at 32, 64 and 128 cells.
-TEST(ShearWork, DoesNotGrowWithTheGridWhereTheRigidityJumps)
+/// Moments along the rim jump there, by dM, and the work of their slope goes as dM^2 / b for a jump that takes b, without end:
+/// it grew by 1.5 to 1.7 from 64 to 128 cells. By Reissner's theory it goes as dM^2 / (b + 4 h / sqrt(10)). Two cells of a
+/// rim that goes in steps share the jump, of 1.56 and 0.78 mm, and h is 1 mm: (3.1 + 1.3) / (1.6 + 1.3) = 1.55 at most, of
+/// that part of the work alone.
+TEST(ShearWork, DoesNotGrowWithoutEndWhereTheRigidityJumps)
 {
     for (const double away : {0.0, 0.15, 0.25}) { // in the disc, over its rim, beside it [window]
         const auto share = [&](int cells, double contrast) {
@@ -282,9 +284,51 @@ TEST(ShearWork, DoesNotGrowWithTheGridWhereTheRigidityJumps)
             return shearWork(shell, w) / dot(load, w);
         };
         EXPECT_NEAR(share(128, 1) / share(64, 1), 1, 0.02) << away;
-        for (const double contrast :
-             {10.0, 100.0, 1000.0}) // measured 1.06 to 1.17; counted in full across the rim 1.2 to 1.7
-            EXPECT_NEAR(share(128, contrast) / share(64, contrast), 1.15, 0.13) << away << ", a disc of " << contrast;
+        for (const double contrast : {10.0, 100.0, 1000.0})
+            EXPECT_LT(share(128, contrast) / share(64, contrast), 1.4) << away << ", a disc of " << contrast;
+    }
+}
+
+/// CalculiX 2.20, C3D20R of 0.5 mm, two through the thickness of 2 mm, 40 mm square, clamped on all sides, Poisson's ratio
+/// 0.45, the fingertip's pressure of radius 4 mm as a force in the volume; the mean deflection under it, of 1 N [m]. With
+/// three of 0.5 mm through the thickness the step of ten is 0.1 % softer.
+TEST(ShearWork, AtAJumpIsThatOfSolids)
+{
+    constexpr double kThickness = 2e-3, kSide = 40e-3, kSoft = 1e6, kNu = 0.45; // [m], [m], [Pa], [1]
+    struct Solid {
+        bool   isDisc; ///< of 6 mm in the middle; else a step there
+        double contrast, x, compliance;
+    };
+    for (const Solid& of :
+         {Solid{false, 1, 0, 0.010384}, Solid{false, 10, 0, 0.0031219}, Solid{false, 10, 3e-3, 0.0020126},
+          Solid{false, 10, -3e-3, 0.0043476}, Solid{false, 100, 0, 0.00052182}, Solid{false, 100, 3e-3, 0.00027903},
+          Solid{false, 100, -3e-3, 0.0013454}, Solid{true, 10, 0, 0.0050561}, Solid{true, 10, 3e-3, 0.0053312},
+          Solid{true, 10, 6e-3, 0.0059710}, Solid{true, 100, 0, 0.0042415}, Solid{true, 100, 3e-3, 0.0046078},
+          Solid{true, 100, 6e-3, 0.0054288}}) {
+        const PlateGrid grid{128, 128, kSide / 128, kSide / 128};
+        Shell           shell;
+        shell.bending = {grid, {Edge::clamped, Edge::clamped, Edge::clamped, Edge::clamped}, kNu, 0, NodeField(grid)};
+        shell.membraneCompliance = NodeField(grid);
+        constexpr int kParts     = 8; // of a cell along either axis
+        for (int i = 0; i <= 128; ++i)
+            for (int j = 0; j <= 128; ++j) {
+                int stiff = 0;
+                for (int part = 0; part < kParts * kParts; ++part) {
+                    const double x = (i - 64.5 + (part / kParts + 0.5) / kParts) * grid.spacingX,
+                                 z = (j - 64.5 + (part % kParts + 0.5) / kParts) * grid.spacingZ;
+                    stiff += of.isDisc ? std::hypot(x, z) < 6e-3 : x > 0;
+                }
+                const double modulus           = kSoft * std::pow(of.contrast, double(stiff) / (kParts * kParts));
+                shell.bending.rigidity(i, j)   = modulus * std::pow(kThickness, 3) / (12 * (1 - kNu * kNu));
+                shell.membraneCompliance(i, j) = 1 / (modulus * kThickness);
+            }
+        const NodeField load = footprintLoad(grid, 1, kSide / 2 + of.x, kSide / 2, 4e-3);
+        const NodeField w    = ReferencePlateSolver(shell.bending).solve(load).deflection;
+        const double    bent = dot(load, w), sheared = shearWork(shell, w);
+        // Measured -2.5 to 2.8 %; +1.6 where nothing jumps, as the first order in thickness over length is.
+        EXPECT_NEAR((bent + sheared) / of.compliance, 1, 0.03)
+            << of.contrast << (of.isDisc ? ", disc, " : ", step, ") << of.x;
+        EXPECT_LT(bent / of.compliance, 0.99) << "then shear is not seen";
     }
 }
 

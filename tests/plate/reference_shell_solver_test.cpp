@@ -282,9 +282,10 @@ TEST(ShearWork, IsExactWhereForcesAcrossTheSheetAreTheSameEverywhere)
     const double qx = kRigidity * (6 * a + 2 * d), qz = kRigidity * (6 * b + 2 * c);
     double       expected = 0;
     for (int i = 1; i <= 6; ++i)
-        for (int j = 1; j <= 4; ++j) { // between inner nodes, the stiffer of which decides
-            if (i < 6) expected += qx * qx * compliance(i, j);
-            if (j < 4) expected += qz * qz * compliance(i, j);
+        for (int j = 1; j <= 4; ++j) { // between inner nodes, which bear it side by side
+            const auto with = [&](double other) { return 2 / (1 / compliance(i, j) + 1 / other); };
+            if (i < 6) expected += qx * qx * with(compliance(i + 1, j));
+            if (j < 4) expected += qz * qz * with(compliance(i, j + 1));
         }
     expected *= 2 * (1 + kPoisson) / (5.0 / 6) * hx * hz;
     EXPECT_NEAR(shearWork(shell, w) / expected, 1, 1e-9); // rounding
