@@ -136,7 +136,9 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, double dee
     const double   less = load * most / deepest;
     if (patch.large)
         return result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds twice the thickness (" +
-                                formatQuantity(most, "m") + "), to which the law of large deflections is trusted");
+                                formatQuantity(most, "m") +
+                                "), to which the law of large deflections is trusted; press with less than " +
+                                formatQuantity(patch.large->force.back(), "N"));
     result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
                      formatQuantity(most, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
                      formatQuantity(patch.stiffening > 0 ? law.force(less / patch.feltStiffness) : less, "N"));
@@ -164,7 +166,11 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
             " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "
             "the nearest point");
-    if (settings.footprintRadius < 2 * patch.spacing)
+    if (settings.footprintRadius < 2 * patch.spacing && patch.coarse)
+        result.push_back("the cells are " + formatQuantity(patch.plate.grid.spacingX, "m") +
+                         " wide and the footprint's radius is " + formatQuantity(settings.footprintRadius, "m") +
+                         ": finer detail of the rigidity is averaged out; take more cells");
+    else if (settings.footprintRadius < 2 * patch.spacing)
         result.push_back("the points are " + formatQuantity(patch.spacing, "m") +
                          " apart and the footprint's radius is " + formatQuantity(settings.footprintRadius, "m") +
                          ": rigidity between the points is interpolated, finer detail is not in the data");

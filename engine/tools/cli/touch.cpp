@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 
+#include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
@@ -59,9 +60,10 @@ void printLarge(const nlohmann::json& large)
 void printWindow(const nlohmann::json& window)
 {
     const bool whole = window["of"] == "object";
-    std::printf("  patch window       %s%s, %d x %d cells, %zu points, ", whole ? "the whole object, " : "",
+    std::printf("  patch window       %s%s, %d x %d cells%s, %zu points, ", whole ? "the whole object, " : "",
                 formatQuantity(window["size"][0], "m").c_str(), window["cells"][0].get<int>(),
-                window["cells"][1].get<int>(), window["points_near_side"].get<std::size_t>());
+                window["cells"][1].get<int>(), whole ? " by its size" : "",
+                window["points_near_side"].get<std::size_t>());
     if (whole)
         std::printf("%zu nodes covered", window["nodes_covered"].get<std::size_t>());
     else
@@ -220,6 +222,16 @@ void tellTakeover(std::string sentence, const Patch& patch, double tolerance)
     sayTakeover(sentence);
 }
 
+/// Says how far from a place that was asked for the touched point lies; empty where the points' own distances explain it.
+std::string placeDoubt(const Scene& scene, const Patch& patch)
+{
+    constexpr double kExplained = 2; // spacings [1]
+    if (!scene.place) return {};
+    const double off = glm::length(patch.contact.point - *scene.place);
+    if (off <= kExplained * patch.spacing) return {};
+    return "the place lies " + formatQuantity(off, "m") + " off the surface: its nearest point is touched";
+}
+
 void touch(const TouchOptions& options)
 {
     Scene                scene    = options.source.load();
@@ -243,6 +255,7 @@ void touch(const TouchOptions& options)
     for (std::string& line : curvatureDoubts(object, patch)) report["warnings"].push_back(std::move(line));
     for (std::string& line : cloudWarnings(scene, object.cloud(), loaded.report))
         report["warnings"].push_back(std::move(line));
+    if (std::string doubt = placeDoubt(scene, patch); !doubt.empty()) report["warnings"].push_back(std::move(doubt));
     report["preset"] = name(scene.preset);
     if (!options.out.empty()) {
         std::vector<std::string> files =
