@@ -14,6 +14,7 @@
 #include "engine/cloud/surface_links.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/detail/body_give.h"
 #include "engine/pipeline/detail/coarser_grid.h"
 #include "engine/pipeline/detail/other_face.h"
 #include "engine/pipeline/detail/shell_patch.h"
@@ -539,7 +540,7 @@ void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
         patch.curvature
             ? solver.solveFootprints(shellOf(patch), {&finger, 1}, 0, settings.tolerance, settings.tolerance)
             : solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance, settings.tolerance);
-    keep(patch, std::move(solved.whole), solved.responses.front().work);
+    keep(patch, std::move(solved.whole), solved.responses.front().work + bodyFelt(patch));
 }
 
 /// Bends the plate also under each footprint of a lattice.
@@ -554,9 +555,10 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
     const bool     whole  = !patch.covered.values().empty();
     MiddleSolution middle = solved(whole ? onSheet(lattice, patch) : lattice);
     if (whole) fillContact(sheetRigidity(patch), lattice, table);
+    addToCompliances(table, bodyFelt(patch));
     table.chart = patch.chart;
     fillStiffening(patch.stiffeningAtNodes, lattice, table);
-    keep(patch, std::move(middle.solution), middle.compliance);
+    keep(patch, std::move(middle.solution), middle.compliance + bodyFelt(patch));
 }
 
 // --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
@@ -674,6 +676,7 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
         const StageClock clock(patch.times.resample);
         curvePatch(patch, object, {laid.touched, std::span(patch.positions).first(patch.touched), laid.normals},
                    settings); //      and, if it is to be a shell, their curvature
+        patch.bodyCompliance = bodyCompliance(patch, object, settings);
     }
     patch.gathered = std::move(ball.points);
     return patch.deformed();
@@ -743,7 +746,8 @@ std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& 
 {
     Shell shell = shellOf(patch);
     // Of an object that ends in the window every node has a sheet or none: nothing is blurred into its border.
-    if (settings.resampling == Resampling::logMean && patch.covered.values().empty()) blurAsIfCoarser(shell, patch.spacing);
+    if (settings.resampling == Resampling::logMean && patch.covered.values().empty())
+        blurAsIfCoarser(shell, patch.spacing);
     shell = everySecondOf(shell);
     if (whyUnsolvable(shell.bending)) return {};
     const PlateGrid& grid = shell.bending.grid;
@@ -763,7 +767,7 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
     if (!patch.deformed() || !hasCoarseGrid(patch, settings)) return {};
     const auto compliance = coarseCompliance(patch, settings, solver);
     if (!compliance) return {};
-    return std::abs(*compliance - patch.compliance) / 3 / patch.compliance;
+    return std::abs(*compliance + bodyFelt(patch) - patch.compliance) / 3 / patch.compliance;
 }
 
 std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
@@ -779,7 +783,8 @@ std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings
                 .responses.front()
                 .work;
         };
-        const double c = patch.curvature ? of(shell) : of(shell.bending);
+        const double body = edge == Edge::supported ? patch.bodyCompliance : 0;
+        const double c    = body + (patch.curvature ? of(shell) : of(shell.bending));
         return feltStiffness(settings.forceLaw, patch.contactStiffness, c);
     };
     return SupportRange{felt(Edge::supported), felt(Edge::clamped)};

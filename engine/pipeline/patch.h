@@ -139,7 +139,8 @@ struct Patch {
     std::optional<LargeLaw> large;
     std::string             linearBecause;        ///< why it is not there although it was asked for
     NodeField               response;             ///< deflection per force at the nodes [m/N]
-    double                  compliance       = 0; ///< c: response averaged over the footprint, work-conjugate [m/N]
+    double                  bodyCompliance   = 0; ///< of a body that the window is cut from, in series [m/N]
+    double                  compliance       = 0; ///< c: response averaged over the footprint, and the body's [m/N]
     double                  contactStiffness = 0; ///< k_c [N/m]
     double                  feltStiffness    = 0; ///< [N/m]
     double                  stiffening       = 0; ///< b under the footprint [1/m], see DepthLaw

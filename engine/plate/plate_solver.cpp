@@ -63,7 +63,8 @@ FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell&
     for (std::size_t n = 0; n < loads.size(); ++n) {
         const ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
         solution.responses.push_back(responseOf(loads[n], of.deflection));
-        solution.responses.back().work = of.work + shear.workOf(of.deflection);
+        solution.responses.back().work =
+            of.work + shear.workOf(of.deflection) - squeezeWork(shell, of.deflection, loads[n]);
         if (!of.report.converged) solution.whole.report = of.report;
     }
     if (solution.whole.report.converged) solution.whole.report = first.report;
@@ -679,7 +680,7 @@ FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const F
     for (std::size_t n = 0; n < loads.size(); ++n) {
         ShellSolution of = solver.solve(loads[n].load(shell.bending.grid));
         solution.responses.push_back(responseOf(loads[n], of.deflection));
-        solution.responses.back().work += shear.workOf(of.deflection);
+        solution.responses.back().work += shear.workOf(of.deflection) - squeezeWork(shell, of.deflection, loads[n]);
         if (n != whole) continue;
         SolveReport& report       = solution.whole.report;
         report.solver             = kReference;

@@ -114,6 +114,24 @@ double Shear::workOf(const NodeField& w) const
     return work;
 }
 
+double squeezeWork(const Shell& shell, const NodeField& w, const Footprint& load)
+{
+    const Plate&     plate  = shell.bending;
+    const PlateGrid& g      = plate.grid;
+    const double     nu     = plate.poissonRatio;
+    const auto       nodesZ = std::uint32_t(g.nodesZ());
+    double           work   = 0;
+    for (const Footprint::Part& part : load.parts) {
+        const int i = int(part.node / nodesZ), j = int(part.node % nodesZ);
+        if (i == 0 || j == 0 || i == g.cellsX || j == g.cellsZ) continue; // moments on the rim are not known here
+        const double bends = (w(i - 1, j) - 2 * w(i, j) + w(i + 1, j)) / (g.spacingX * g.spacingX) +
+                             (w(i, j - 1) - 2 * w(i, j) + w(i, j + 1)) / (g.spacingZ * g.spacingZ);
+        const double counts = shell.sheared.values().empty() ? 1 : shell.sheared(i, j);
+        work -= counts * part.force * shell.membraneCompliance(i, j) * plate.rigidity(i, j) * (1 + nu) * bends;
+    }
+    return 1.2 * nu * work;
+}
+
 double shearWork(const Shell& shell, const NodeField& w)
 {
     return Shear(shell).workOf(w);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <initializer_list>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -63,11 +64,11 @@ std::function<glm::dvec3(double, double)> flat(double size)
 Object curvedObject(std::string_view name)
 {
     const glm::dvec3 round(50e-3), axes(60e-3, 45e-3, 35e-3);
-    if (name == "sphere") return {cap(round), 0.1, 0.1};
+    if (name == "sphere") return {cap(round), 0.1, 0.1, 1, 0, 60e-3}; // 8 lengths of the thickest
     // Unlike curvatures reach farther: 12 to 20 lengths.
     if (name == "ellipsoid") return {cap(axes), 0.12, 0.09, 1, 0, 100e-3};
     if (name == "slope") return {cap(axes), 0.12, 0.09, 1, 0, 100e-3, 1 / 66e-3};
-    if (name == "wart_under") return {cap(round), 0.1, 0.1, 10};
+    if (name == "wart_under") return {cap(round), 0.1, 0.1, 10, 0, 60e-3};
     if (name == "wart_beside") return {cap(round), 0.1, 0.1, 10, 8e-3};
     if (name == "soft_spot") return {cap(round), 0.1, 0.1, 0.2};
     Object shoulder{cap(axes, std::numbers::pi / 4), 0.12, 0.09, 1, 0, 50e-3};
@@ -179,7 +180,7 @@ PatchSettings settingsOf(const Object& object, Theory theory, Edge edge)
 {
     PatchSettings settings{.window = object.window, .theory = theory};
     settings.edges = {edge, edge, edge, edge};
-    if (object.window > 70e-3) settings.cells = 128;
+    if (object.window > 50e-3) settings.cells = 128;
     return settings;
 }
 
@@ -205,13 +206,57 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
         if (kindOf(of.name) != Kind::curved) continue;
         const double felt = feltBy(Theory::shell, Edge::supported, of) / of.stiffness - 1;
         const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: spheres 0 to 4 %, ellipsoids and slope 3 to 5, at the shoulder 6 and 10, spots 2 to 8. What is
-        // left has the sign of a body that gives way as a whole, which no window sees.
+        // Measured: spheres -0.1 to -2.5 %, ellipsoids and slope 2 to 3, at the shoulder 3 and 4, spots -2 to 2. Without
+        // what the whole body gives way by, and with the squeeze left out, it was 3 to 4, 3 to 5, 6 to 10 and 2 to 9.
         std::printf("  %s, %.0f mm: shell %+.1f %%, flat plate %+.1f %%\n", std::string(of.name).c_str(),
                     1e3 * of.thickness, 100 * felt, 100 * flat);
-        const bool even = of.name == "sphere" || of.name == "ellipsoid" || of.name == "slope";
-        EXPECT_LT(std::abs(felt), even ? 0.05 : 0.1) << of.name << ", " << of.thickness << " m";
+        EXPECT_LT(std::abs(felt), of.name == "sphere" ? 0.03 : 0.05) << of.name << ", " << of.thickness << " m";
         EXPECT_GT(std::abs(flat), 0.2) << of.name << ": then nothing is shown";
+    }
+}
+
+/// A sphere that is held at its equator in symmetry: CalculiX 2.20, CAX8R of l/32 about the pole, three through the thickness,
+/// a pressure (1 - r^2/a^2)^2 of a = l, half on either face; times E R it depends on h/R alone.
+TEST(CalculixBodies, GiveWayAsAWhole)
+{
+    struct Sphere {
+        double thickness, length, compliance; ///< over R, over R, times E R [1]
+    };
+    constexpr double kRadius = 50e-3; // [m]
+    for (const Sphere& of :
+         {Sphere{0.01, 0.0568554, 3138.56}, Sphere{0.02, 0.0804057, 801.514}, Sphere{0.04, 0.113711, 207.883}}) {
+        const Object     object   = objectNamed("sphere");
+        const SoftObject cloud    = cloudOf(object, of.thickness * kRadius);
+        PatchSettings    settings = settingsOf(object, Theory::shell, Edge::supported);
+        settings.footprintRadius  = of.length * kRadius;
+        PlateSolver  host("host");
+        const Patch  patch = deform(cloud, touchAt(cloud, object.touch, object.outward, 10e-3), settings, host);
+        const double exact = of.compliance / (kModulus * kRadius); // [m/N]
+        EXPECT_NEAR(patch.compliance / exact, 1, 0.015)            // 1.1 % at h/R 0.04: shear counts to the first order
+            << of.thickness;
+        EXPECT_LT((patch.compliance - patch.bodyCompliance) / exact, 0.985) << "then the body is not seen";
+
+        settings.edges = {Edge::clamped, Edge::supported, Edge::supported, Edge::supported};
+        EXPECT_LT(deform(cloud, patch.contact, settings, host).compliance, patch.compliance - patch.bodyCompliance)
+            << "a window that is held is no part of a body";
+        settings.edges      = {Edge::supported, Edge::supported, Edge::supported, Edge::supported};
+        settings.foundation = 1e3 * kModulus * of.thickness / kRadius; // as stiff as a thousand such membranes [Pa/m]
+        EXPECT_LT(deform(cloud, patch.contact, settings, host).bodyCompliance, 2e-3 * patch.bodyCompliance);
+    }
+}
+
+TEST(CalculixBodies, ACapIsHeldAtItsRim)
+{
+    const Object object = objectNamed("sphere");
+    Object       cap    = object;
+    cap.inside          = [](const glm::dvec3& p) { return p.z > 40e-3; }; // 37 degrees
+    PlateSolver host("host");
+    for (const Object* of : std::initializer_list<const Object*>{&object, &cap}) {
+        const SoftObject cloud    = cloudOf(*of, 1e-3);
+        PatchSettings    settings = settingsOf(*of, Theory::shell, Edge::supported);
+        settings.window           = 40e-3;
+        const Patch patch         = deform(cloud, touchAt(cloud, of->touch, of->outward, 10e-3), settings, host);
+        EXPECT_EQ(patch.bodyCompliance > 0, of == &object);
     }
 }
 
@@ -282,9 +327,8 @@ TEST(CalculixPresses, AreFeltUpToOneAndAHalfThicknesses)
         for (std::size_t n = 0; n < of.depths.size(); ++n) {
             const double depth = of.depths[n], force = of.force * double(n + 1) / double(of.depths.size());
             if (depth > 1.55 * of.thickness) break;
-            // Measured: sheet 0.7 %, spheres 2 to 4, ellipsoid 2 to 3, spots of stiffness 1 to 8, about what the linear
-            // shell is off by.
-            EXPECT_NEAR(forceAt(patch, depth) / force, 1, of.name == "wart_under" ? 0.085 : 0.06)
+            // Measured: sheet 0.7 %, spheres -0.8 to 3.9, ellipsoid 2, spots of stiffness -2 to 4.1.
+            EXPECT_NEAR(forceAt(patch, depth) / force, 1, 0.045)
                 << of.name << ", " << of.thickness << " m, " << depth << " m deep";
             deepest = depth / patch.compliance / force - 1; // of the linear law
         }

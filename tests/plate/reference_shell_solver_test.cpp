@@ -261,6 +261,24 @@ TEST(ShearWork, IsThatOfASupportedPlateOfFiniteThickness)
     EXPECT_LT(std::abs(fine), 0.6 * std::abs(coarse));
 }
 
+TEST(SqueezeWork, TakesHalfOfPoissonsRatioOfAFlatSheetsShearAway)
+{
+    // Reissner 1945: D lap lap w = q - h^2 (2 - nu) / (10 (1 - nu)) lap q, of which the shear is the 2.
+    const auto share = [](int cells) {
+        const Shell shell = homogeneous(cells, kSize, {0, 0, 0});
+        NodeField   load(shell.bending.grid);
+        for (int i = 0; i <= cells; ++i)
+            for (int j = 0; j <= cells; ++j) load(i, j) = std::sin(2 * kPi * i / cells) * std::sin(3 * kPi * j / cells);
+        const NodeField w       = ReferenceShellSolver(shell).solve(load).deflection;
+        const double    squares = (4 + 9) * std::pow(kPi / kSize, 2);
+        const double    sheared = kRigidity * squares * 2 * (1 + kPoisson) * kCompliance * 6 / 5 * dot(load, w);
+        return squeezeWork(shell, w, Footprint(load)) / sheared;
+    };
+    const double coarse = share(32) / (kPoisson / 2) - 1, fine = share(64) / (kPoisson / 2) - 1;
+    EXPECT_LT(std::abs(fine), 0.005) << "pi^2 9 / (12 64^2) = 0.0018 by differences of the second order";
+    EXPECT_NEAR(coarse / fine, 4, 0.5);
+}
+
 TEST(ShearWork, IsExactWhereForcesAcrossTheSheetAreTheSameEverywhere)
 {
     // A deflection of the third degree: moments are of the first degree, differences exact.

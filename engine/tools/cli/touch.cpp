@@ -74,7 +74,7 @@ void printWindow(const nlohmann::json& window)
         std::printf("  window chosen      %s\n", window["chosen"].get<std::string>().c_str());
 }
 
-void printShell(const nlohmann::json& shell)
+void printShell(const nlohmann::json& shell, double compliance)
 {
     const auto quantity = [](const nlohmann::json& number, const char* unit) { return formatQuantity(number, unit); };
     if (shell["flat"].get<bool>())
@@ -91,6 +91,9 @@ void printShell(const nlohmann::json& shell)
                     quantity(shell["felt_stiffness_clamped"], "N/m").c_str(),
                     shell["edges"].get<std::string>().c_str());
     std::printf("\n");
+    if (const double body = shell["body_compliance"]; body > 0 && shell["edges"] == "supported")
+        std::printf("  body               gives way by %s of the compliance, as one that is held about its widest\n",
+                    percent(body / compliance).c_str());
 }
 
 void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)
@@ -124,7 +127,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
-    if (const auto& shell = r["shell"]; !shell.is_null()) printShell(shell);
+    if (const auto& shell = r["shell"]; !shell.is_null()) printShell(shell, r["compliance"]);
     if (const auto& large = r["large"]; !large.is_null()) printLarge(large);
     if (!scene.material.isLinear() || r["stiffening"].get<double>() > 0)
         std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
