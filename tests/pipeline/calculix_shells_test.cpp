@@ -64,14 +64,15 @@ std::function<glm::dvec3(double, double)> flat(double size)
 Object curvedObject(std::string_view name)
 {
     const glm::dvec3 round(50e-3), axes(60e-3, 45e-3, 35e-3);
-    if (name == "sphere") return {cap(round), 0.1, 0.1, 1, 0, 60e-3}; // 8 lengths of the thickest
+    if (name == "sphere")
+        return {cap(round), 0.1, 0.1, 1, 0, 60e-3}; // 8 lengths of the thickest, as of the spots and the shoulder
     // Unlike curvatures reach farther: 12 to 20 lengths.
     if (name == "ellipsoid") return {cap(axes), 0.12, 0.09, 1, 0, 100e-3};
     if (name == "slope") return {cap(axes), 0.12, 0.09, 1, 0, 100e-3, 1 / 66e-3};
     if (name == "wart_under") return {cap(round), 0.1, 0.1, 10, 0, 60e-3};
     if (name == "wart_beside") return {cap(round), 0.1, 0.1, 10, 8e-3};
     if (name == "soft_spot") return {cap(round), 0.1, 0.1, 0.2};
-    Object shoulder{cap(axes, std::numbers::pi / 4), 0.12, 0.09, 1, 0, 50e-3};
+    Object shoulder{cap(axes, std::numbers::pi / 4), 0.12, 0.09, 1, 0, 60e-3};
     shoulder.outward = glm::normalize(shoulder.place(0, 0) / (axes * axes));
     return shoulder;
 }
@@ -206,7 +207,7 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
         if (kindOf(of.name) != Kind::curved) continue;
         const double felt = feltBy(Theory::shell, Edge::supported, of) / of.stiffness - 1;
         const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: spheres -0.1 to -2.5 %, ellipsoids and slope 2 to 3, at the shoulder 3 and 4, spots -2 to 2. Without
+        // Measured: spheres 0.6 to 0.8 %, ellipsoids and slope 2 to 3, at the shoulder 2.9 and 5.0, spots -1 to 3. Without
         // what the whole body gives way by, and with the squeeze left out, it was 3 to 4, 3 to 5, 6 to 10 and 2 to 9.
         std::printf("  %s, %.0f mm: shell %+.1f %%, flat plate %+.1f %%\n", std::string(of.name).c_str(),
                     1e3 * of.thickness, 100 * felt, 100 * flat);
@@ -215,7 +216,7 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
     }
 }
 
-/// A sphere that is held at its equator in symmetry: CalculiX 2.20, CAX8R of l/32 about the pole, three through the thickness,
+/// A sphere that is clamped 78 degrees from its far end: CalculiX 2.20, CAX8R of l/32 about the pole, three through the thickness,
 /// a pressure (1 - r^2/a^2)^2 of a = l, half on either face; times E R it depends on h/R alone.
 TEST(CalculixBodies, GiveWayAsAWhole)
 {
@@ -224,7 +225,7 @@ TEST(CalculixBodies, GiveWayAsAWhole)
     };
     constexpr double kRadius = 50e-3; // [m]
     for (const Sphere& of :
-         {Sphere{0.01, 0.0568554, 3138.56}, Sphere{0.02, 0.0804057, 801.514}, Sphere{0.04, 0.113711, 207.883}}) {
+         {Sphere{0.01, 0.0568554, 3145.18}, Sphere{0.02, 0.0804057, 804.254}, Sphere{0.04, 0.113711, 208.865}}) {
         const Object     object   = objectNamed("sphere");
         const SoftObject cloud    = cloudOf(object, of.thickness * kRadius);
         PatchSettings    settings = settingsOf(object, Theory::shell, Edge::supported);
@@ -327,8 +328,8 @@ TEST(CalculixPresses, AreFeltUpToOneAndAHalfThicknesses)
         for (std::size_t n = 0; n < of.depths.size(); ++n) {
             const double depth = of.depths[n], force = of.force * double(n + 1) / double(of.depths.size());
             if (depth > 1.55 * of.thickness) break;
-            // Measured: sheet 0.7 %, spheres -0.8 to 3.9, ellipsoid 2, spots of stiffness -2 to 4.1.
-            EXPECT_NEAR(forceAt(patch, depth) / force, 1, 0.045)
+            // Measured: sheet 0.7 %, spheres 0.8 to 4.4, ellipsoid 2, spots of stiffness -1 to 4.3.
+            EXPECT_NEAR(forceAt(patch, depth) / force, 1, 0.05)
                 << of.name << ", " << of.thickness << " m, " << depth << " m deep";
             deepest = depth / patch.compliance / force - 1; // of the linear law
         }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -12,16 +13,21 @@
 namespace palp {
 namespace {
 
-/// Returns how far an object's box reaches below a place [m].
-double depthBelow(const Bounds& box, const glm::dvec3& place, const glm::dvec3& outward)
+/// Returns the cosine of the angle from the contact at which a body is taken to be held [1]: about where its surface turns
+/// farthest away from there, the rim of a cap; of a body that turns all the way, just below its widest.
+double rimOf(const SoftObject& object, const glm::dvec3& outward)
 {
-    double deepest = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        glm::dvec3 p;
-        for (int axis = 0; axis < 3; ++axis) p[axis] = (corner >> axis & 1 ? box.high : box.low)[axis];
-        deepest = std::max(deepest, -glm::dot(p - place, outward));
-    }
-    return deepest;
+    constexpr std::size_t kAsked  = 1000; // points
+    constexpr double      kNearly = 0.02; // of them may be strays [1]
+    constexpr double    kClosed = 0.05; // cosine from which it turns all the way: the scatter of points is not felt [1]
+    constexpr double    kBelow  = 0.2;  // cosine of 78 degrees, from the far end [1]
+    const std::size_t   step    = object.size() / kAsked + 1;
+    std::vector<double> turns; // cosines, of normals without a side
+    for (std::size_t rank = 0; rank < object.size(); rank += step)
+        turns.push_back(std::abs(glm::dot(object.survey().normalOfRank(rank), outward)));
+    const auto most = turns.begin() + std::ptrdiff_t(kNearly * double(turns.size()));
+    std::ranges::nth_element(turns, most);
+    return (1 + kBelow) * std::max(0.0, *most - kClosed) / (1 - kClosed) - kBelow;
 }
 
 /// Returns what being held at a rim at this angle from the contact adds to ln(2 R / rho) - 1, which is of 90 degrees.
@@ -38,16 +44,17 @@ double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchS
     if (!patch.curvature || !patch.covered.values().empty()) return 0;
     const auto [most, least] = patch.principal;
     if (!(least / most > kOneWay)) return 0;
+    const double bulges =
+        std::min(1.0, least / most / kOneWay - 1); // no step where a hand comes to what bulges one way [1]
 
     const double nu = object.material().poissonRatio, radius = 1 / std::sqrt(most * least);
     const double length = std::sqrt(radius * object.material().thickness) / std::pow(12 * (1 - nu * nu), 0.25); // [m]
-    const double rho    = std::hypot((0.57 - 0.54 * nu) * length, (0.58 - 0.33 * nu) * settings.footprintRadius);
-    const double below  = depthBelow(object.cloud().bounds(), patch.chart.origin, patch.chart.frame.normal);
-    const double rim    = std::max(0.0, 1 - below / radius); // cosine of its angle from the contact [1]
+    const double rho    = std::pow(std::pow(0.95 * length, 4) + std::pow(0.43 * settings.footprintRadius, 4), 0.25);
+    const double rim    = rimOf(object, patch.chart.frame.normal);
     if (!(rim < 1)) return 0;
     const double ways = std::log(2 * radius / rho) - 1 + heldAtRim(rim);
     const double give = geometricMean(patch.membraneCompliance.values()); // 1/(E h) [m/N]
-    return std::max(0.0, ways) * (1 + nu) / (2 * std::numbers::pi) * give /
+    return bulges * std::max(0.0, ways) * (1 + nu) / (2 * std::numbers::pi) * give /
            (1 + settings.foundation * radius * radius * give);
 }
 

@@ -92,8 +92,9 @@ void printShell(const nlohmann::json& shell, double compliance)
                     shell["edges"].get<std::string>().c_str());
     std::printf("\n");
     if (const double body = shell["body_compliance"]; body > 0 && shell["edges"] == "supported")
-        std::printf("  body               gives way by %s of the compliance, as one that is held about its widest\n",
-                    percent(body / compliance).c_str());
+        std::printf(
+            "  body               gives way by %s of the compliance, as one that is held just below its widest\n",
+            percent(body / compliance).c_str());
 }
 
 void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann::json& r)
