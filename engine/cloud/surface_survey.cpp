@@ -236,12 +236,12 @@ SurfaceSurvey::Measuring::WideShape SurfaceSurvey::Measuring::settledShape(std::
     return {};
 }
 
-/// Returns whether the deviation of the ball that was gathered last is that of most of its points. About the wall of a clean
-/// thin body two faces fit well but for the wall, in every wider ball; points off the wall do not deviate. Some points tell
-/// that, in balls too small for both faces.
+/// Returns whether the deviation of the two faces in the ball that was gathered last is that of most of its points. About the
+/// wall of a clean thin body two faces fit well but for the wall, in every wider ball; points off the wall do not deviate.
+/// Some points tell that, in balls too small for both faces. Of a single sheet noise may well end in the middle of a ball.
 bool SurfaceSurvey::Measuring::isNoiseEverywhere(const WideShape& wide)
 {
-    if (!(wide.shape.residual > 0)) return false;
+    if (!(wide.shape.apart > 0)) return true;
     some_.clear();
     for (std::size_t k = 0; k < kAsked; ++k) some_.push_back(found_[k * found_.size() / kAsked]);
     values_.clear();
