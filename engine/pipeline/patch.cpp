@@ -46,6 +46,14 @@ double bentSize(const Patch& patch)
     return patch.covered.values().empty() ? side : side / 2;
 }
 
+double bodyFelt(const Patch& patch) noexcept
+{
+    const PlateEdges& edges = patch.plate.edges;
+    for (const Edge edge : {edges.x0, edges.x1, edges.z0, edges.z1})
+        if (edge != Edge::supported) return 0;
+    return patch.bodyCompliance;
+}
+
 double mostResponse(const Patch& patch)
 {
     double most = 0;

@@ -169,6 +169,10 @@ struct Patch {
 /// Returns the sheet's flexural rigidity at the contact [N m].
 [[nodiscard]] double rigidityAtContact(const Patch& patch);
 
+/// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where an edge is held
+/// or free.
+[[nodiscard]] double bodyFelt(const Patch& patch) noexcept;
+
 /// Returns the largest deflection per force of the object [m/N]; nodes beyond its border do not count.
 [[nodiscard]] double mostResponse(const Patch& patch);
 

@@ -92,7 +92,8 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
     const auto [most, least] = patch.principal;
     const bool   whole       = settings.windowOf == WindowOf::object;
     const double window = bentSize(patch), lengths = window / patch.shellLength;
-    const bool   ends = least / most > kOneWay || settings.foundation > 0; // dents, somewhere
+    const bool   bent = std::abs(most) * window >= kHardly;
+    const bool   ends = (bent && least / most > kOneWay) || settings.foundation > 0; // dents, somewhere
     if (!whole && lengths < kNearly * kLocalWindow && ends)
         result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
                          formatQuantity(patch.shellLength, "m") +
@@ -102,9 +103,9 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
     else if (!whole && !ends)
         result.push_back(
             "the surface is " +
-            std::string(std::abs(most) * window < kHardly ? "hardly curved"
-                        : least / most < -kOneWay         ? "curved both ways against each other"
-                                                          : "curved one way") +
+            std::string(!bent                     ? "hardly curved"
+                        : least / most < -kOneWay ? "curved both ways against each other"
+                                                  : "curved one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
     constexpr double kShown = 0.005; // half of what is printed of a sag is no excess [1]

@@ -110,7 +110,10 @@ public:
         // A window of a shell is as wide as its dents ask for, and cut from a larger body: clamped edges, which presets
         // have, would hold its membrane as well.
         if (key.name == "edges")
-            if (auto edges = itselfOrOfShells(key, name(Edge::supported))) return edges;
+            if (auto edges = itselfOrOfShells(key, name(Edge::supported))) {
+                if (isShell()) nameAllSides(edges->text, Edge::supported);
+                return edges;
+            }
         if (key.name == "window")
             if (auto window = itselfOrOfShells(key, name(WindowOf::dent))) return window;
         for (const Origin origin : kRanks) {
@@ -137,12 +140,26 @@ private:
         for (const Origin origin : kRanks)
             if (auto stated = statedBy(origin, key)) return stated;
         const auto theory = about(sceneKey("theory"));
-        if (!theory) return std::nullopt;
-        const WrittenValue given{sceneKey("theory"), theory->text, theory->what};
-        if (given.value<Theory>() != Theory::shell) return std::nullopt;
+        if (!isShell()) return std::nullopt;
         return Statement{std::string(value),
                          theory->what,
                          {theory->origin.origin, theory->origin.where + ": theory " + theory->text}};
+    }
+
+    [[nodiscard]] bool isShell() const
+    {
+        const auto theory = about(sceneKey("theory"));
+        if (!theory) return false;
+        const WrittenValue given{sceneKey("theory"), theory->text, theory->what};
+        return given.value<Theory>() == Theory::shell;
+    }
+
+    /// Adds the sides that a list of edges does not name.
+    static void nameAllSides(std::string& edges, Edge others)
+    {
+        if (edges.find('=') == std::string::npos) return;
+        for (const char* const side : {"x0=", "x1=", "z0=", "z1="})
+            if (edges.find(side) == std::string::npos) edges += std::string(",") + side + name(others);
     }
 
     [[nodiscard]] std::optional<Statement> statedBy(Origin origin, const SceneKey& key) const

@@ -34,6 +34,9 @@ Patch touched(double most, double least)
     patch.plate.grid  = {2, 2, 1e-3, 1e-3};
     patch.plate.edges = {Edge::supported, Edge::supported, Edge::supported, Edge::supported};
     patch.curvature.emplace();
+    patch.curvature->x       = NodeField(patch.plate.grid, most);
+    patch.curvature->z       = NodeField(patch.plate.grid, least);
+    patch.curvature->xz      = NodeField(patch.plate.grid);
     patch.principal          = {most, least};
     patch.membraneCompliance = NodeField(patch.plate.grid, kMembrane);
     patch.chart.frame.normal = {0, 0, 1};
@@ -52,7 +55,24 @@ TEST(BodyGive, IsMembraneTheorysOfASphereHeldBelowItsWidest)
                 1, 1e-3);
     EXPECT_EQ(bodyCompliance(touched(20, -20), closed, settings), 0) << "a saddle";
     EXPECT_EQ(bodyCompliance(touched(20, 20), sphere(0.08), settings), 0) << "a cap of 37 degrees is held at its rim";
+    EXPECT_EQ(bodyCompliance(touched(-3e-20, -6e-21), closed, settings), 0) << "a face as flat as numbers are";
+    EXPECT_EQ(bodyCompliance(touched(2, 2), closed, settings), 0) << "flat beside the body";
     EXPECT_GT(bodyCompliance(touched(-20, -20), closed, settings), 0) << "pressed from within";
+}
+
+/// The wall of a cut rim, which turns farther than what it is cut from, is a small share of the points.
+TEST(BodyGive, IsNothingForACapWhoseRimHasAWall)
+{
+    const SoftObject        cap = sphere(0.08); // 37 degrees
+    std::vector<glm::dvec3> points(cap.positions().begin(), cap.positions().end());
+    for (int n = 0; n < 400; ++n) // a tenth, 4 mm high, straight outwards from the rim's edge
+        points.push_back((0.1 + 1e-5 * (n % 20 * 20)) *
+                         glm::dvec3(0.6 * std::cos(n * 0.0157), 0.6 * std::sin(n * 0.0157), 0.8));
+    const std::size_t count = points.size();
+    const SoftObject  walled(PointCloud(std::move(points), std::vector<double>(count, 1e6), StiffnessKind::modulus),
+                             {.thickness = 1e-3, .poissonRatio = 0.45});
+    EXPECT_EQ(bodyCompliance(touched(10, 10), cap, {.footprintRadius = 4e-3}), 0);
+    EXPECT_EQ(bodyCompliance(touched(10, 10), walled, {.footprintRadius = 4e-3}), 0);
 }
 
 /// What a hand that slides from a bulge to a tube is told may not step.

@@ -119,6 +119,12 @@ TEST(Scene, AShellsWindowHasSupportedEdgesUnlessEdgesSaysOtherwise)
     EXPECT_EQ(parsed(R"({"cloud": "sample:skin", "edges": "clamped"})", overrides({{"theory", "shell"}})).patch.edges,
               PlateEdges{})
         << "a flag's theory does not undo what the file says of the edges";
+    EXPECT_EQ(parsed(shell + R"(, "edges": "z1=clamped"})").patch.edges,
+              (PlateEdges{Edge::supported, Edge::supported, Edge::supported, Edge::clamped}))
+        << "sides that are not named stay a shell's";
+    EXPECT_EQ(parsed(R"({"cloud": "sample:skin", "edges": "z1=free"})").patch.edges,
+              (PlateEdges{Edge::clamped, Edge::clamped, Edge::clamped, Edge::free}))
+        << "or a plate's";
 
     const Scene flat = parsed(shell + "}", overrides({{"theory", "plate"}}));
     EXPECT_EQ(flat.patch.theory, Theory::plate);
@@ -171,7 +177,7 @@ TEST(Scene, EveryKeyOfEverySpellingIsRead)
     EXPECT_EQ(scene.patch.cells, 32);
     EXPECT_EQ(scene.patch.map, Map::gallPeters);
     EXPECT_EQ(scene.patch.resampling, Resampling::nearest);
-    EXPECT_EQ(scene.patch.edges, (PlateEdges{.x0 = Edge::free}));
+    EXPECT_EQ(scene.patch.edges, (PlateEdges{Edge::free, Edge::supported, Edge::supported, Edge::supported}));
     EXPECT_EQ(scene.patch.forceLaw, ForceLaw::paper);
     EXPECT_EQ(scene.patch.tolerance, 1e-6);
     EXPECT_EQ(scene.complianceLaw, ComplianceLaw::blend);

@@ -13,21 +13,44 @@
 namespace palp {
 namespace {
 
-/// Returns the cosine of the angle from the contact at which a body is taken to be held [1]: about where its surface turns
-/// farthest away from there, the rim of a cap; of a body that turns all the way, just below its widest.
+/// Returns the cosine of the angle from the contact at which a body is taken to be held [1]: where its surface turns farthest
+/// away from there, the rim of a cap; of a body that turns all the way, just below its widest.
+///
+/// By a cap, or a sphere, with as large a share of its area that turns farther: the wall of a cut rim is a smaller one.
 double rimOf(const SoftObject& object, const glm::dvec3& outward)
 {
-    constexpr std::size_t kAsked  = 1000; // points
-    constexpr double      kNearly = 0.02; // of them may be strays [1]
-    constexpr double    kClosed = 0.05; // cosine from which it turns all the way: the scatter of points is not felt [1]
-    constexpr double    kBelow  = 0.2;  // cosine of 78 degrees, from the far end [1]
-    const std::size_t   step    = object.size() / kAsked + 1;
+    constexpr std::size_t kAsked = 1000;             // points
+    constexpr double      kShare = 0.15;             // [1]
+    constexpr double    kClosed = 0.15, kOpen = 0.5; // cosines up to which it turns all the way, and from which not [1]
+    constexpr double    kBelow = 0.2;                // cosine of 78 degrees, from the far end [1]
+    const std::size_t   step   = object.size() / kAsked + 1;
     std::vector<double> turns; // cosines, of normals without a side
     for (std::size_t rank = 0; rank < object.size(); rank += step)
         turns.push_back(std::abs(glm::dot(object.survey().normalOfRank(rank), outward)));
-    const auto most = turns.begin() + std::ptrdiff_t(kNearly * double(turns.size()));
+    const auto most = turns.begin() + std::ptrdiff_t(kShare * double(turns.size()));
     std::ranges::nth_element(turns, most);
-    return (1 + kBelow) * std::max(0.0, *most - kClosed) / (1 - kClosed) - kBelow;
+    const double rim  = 1 - (1 - *most) / (1 - kShare); // the cosine is spread evenly over a sphere's area
+    const double open = std::clamp((rim - kClosed) / (kOpen - kClosed), 0.0, 1.0);
+    return open < 1 ? std::lerp(-kBelow, kOpen, open) : rim;
+}
+
+/// The curvature of the surface across the window.
+struct MeanCurvature {
+    double gaussian = 0; ///< mean of the product of the principal ones [1/m^2]
+    double largest  = 0; ///< mean of the square of the larger one [1/m^2]
+};
+
+MeanCurvature meanCurvature(const CurvatureField& field)
+{
+    MeanCurvature mean;
+    const auto    nodes = double(field.x.values().size());
+    for (std::size_t n = 0; n < field.x.values().size(); ++n) {
+        const double x = field.x.values()[n], z = field.z.values()[n], xz = field.xz.values()[n];
+        const double larger = std::abs(x + z) / 2 + std::hypot((x - z) / 2, xz);
+        mean.gaussian += (x * z - xz * xz) / nodes;
+        mean.largest += larger * larger / nodes;
+    }
+    return mean;
 }
 
 /// Returns what being held at a rim at this angle from the contact adds to ln(2 R / rho) - 1, which is of 90 degrees.
@@ -42,12 +65,13 @@ double heldAtRim(double cosine)
 double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchSettings& settings)
 {
     if (!patch.curvature || !patch.covered.values().empty()) return 0;
-    const auto [most, least] = patch.principal;
-    if (!(least / most > kOneWay)) return 0;
-    const double bulges =
-        std::min(1.0, least / most / kOneWay - 1); // no step where a hand comes to what bulges one way [1]
-
-    const double nu = object.material().poissonRatio, radius = 1 / std::sqrt(most * least);
+    // What is far away decides, not a bump at the contact: a hand that slides on meets no step.
+    const auto [gaussian, largest] = meanCurvature(*patch.curvature);
+    if (!(gaussian > kOneWay * largest)) return 0;
+    const double nu = object.material().poissonRatio, radius = 1 / std::sqrt(gaussian);
+    // Neither what bulges hardly more than one way, nor what is flat beside the body's size, is part of a dome.
+    const double size   = object.cloud().bounds().diagonal() / 2;
+    const double bulges = std::min(1.0, gaussian / largest / kOneWay - 1) * std::clamp(2 - radius / size, 0.0, 1.0);
     const double length = std::sqrt(radius * object.material().thickness) / std::pow(12 * (1 - nu * nu), 0.25); // [m]
     const double rho    = std::pow(std::pow(0.95 * length, 4) + std::pow(0.43 * settings.footprintRadius, 4), 0.25);
     const double rim    = rimOf(object, patch.chart.frame.normal);
@@ -56,14 +80,6 @@ double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchS
     const double give = geometricMean(patch.membraneCompliance.values()); // 1/(E h) [m/N]
     return bulges * std::max(0.0, ways) * (1 + nu) / (2 * std::numbers::pi) * give /
            (1 + settings.foundation * radius * radius * give);
-}
-
-double bodyFelt(const Patch& patch) noexcept
-{
-    const PlateEdges& edges = patch.plate.edges;
-    for (const Edge edge : {edges.x0, edges.x1, edges.z0, edges.z1})
-        if (edge != Edge::supported) return 0;
-    return patch.bodyCompliance;
 }
 
 void addToCompliances(ComplianceTable& table, double more) noexcept

@@ -20,9 +20,6 @@ namespace palp {
 /// \source  Membrane theory of a sphere under a point force, see Fluegge, Stresses in Shells, 1960
 [[nodiscard]] double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchSettings& settings);
 
-/// Returns what of that is felt [m/N]: all where the window is cut from the body, nothing where an edge is held or free.
-[[nodiscard]] double bodyFelt(const Patch& patch) noexcept;
-
 /// Adds a compliance [m/N] to what each footprint of a table feels.
 void addToCompliances(ComplianceTable& table, double more) noexcept;
 

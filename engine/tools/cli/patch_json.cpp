@@ -101,7 +101,7 @@ Json shellJson(const Patch& patch, const PatchSettings& settings, PlateSolver& s
             {"fit_radius", patch.curvature ? Json(patch.curvature->radius) : Json()},
             {"length", isEnded ? Json(patch.shellLength) : Json()},
             {"window_lengths", isEnded ? Json(bentSize(patch) / patch.shellLength) : Json()},
-            {"body_compliance", patch.bodyCompliance},
+            {"body_compliance", bodyFelt(patch)},
             {"felt_stiffness_supported", orNull(range ? std::optional(range->supported) : std::nullopt)},
             {"felt_stiffness_clamped", orNull(range ? std::optional(range->clamped) : std::nullopt)},
             {"edges", edgesText(settings.edges)}};

@@ -91,7 +91,7 @@ void printShell(const nlohmann::json& shell, double compliance)
                     quantity(shell["felt_stiffness_clamped"], "N/m").c_str(),
                     shell["edges"].get<std::string>().c_str());
     std::printf("\n");
-    if (const double body = shell["body_compliance"]; body > 0 && shell["edges"] == "supported")
+    if (const double body = shell["body_compliance"]; body > 0)
         std::printf(
             "  body               gives way by %s of the compliance, as one that is held just below its widest\n",
             percent(body / compliance).c_str());
