@@ -220,7 +220,7 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
     }
 }
 
-/// A sphere that is clamped 78 degrees from its far end: CalculiX 2.20, CAX8R of l/32 about the pole, three through the thickness,
+/// A sphere that is clamped 78 degrees from its far end, by calculix_bodies.py beside this: CalculiX 2.20, CAX8R of l/32 about the pole, three through the thickness,
 /// a pressure (1 - r^2/a^2)^2 of a = l, half on either face; times E R it depends on h/R alone.
 TEST(CalculixBodies, GiveWayAsAWhole)
 {
