@@ -229,6 +229,12 @@ Choice chosen(const SoftObject& object, const PatchSettings& settings)
 
 } // namespace
 
+double shellLengthRoot(const Material& material) noexcept
+{
+    const double nu = material.poissonRatio;
+    return std::sqrt(material.thickness) / std::pow(12 * (1 - nu * nu), 0.25);
+}
+
 std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings)
 {
     return lengthsOf(object, settings, bendsOf(object, settings));

@@ -26,6 +26,10 @@ inline constexpr double kOneWay = 0.1;
     return most > kVaried * least ? 12 : 10;
 }
 
+/// Returns the length over which a dent of a shell dies away, times the root of its curvature [m^(1/2)]: l sqrt(k) =
+/// sqrt(h) / (12 (1 - nu^2))^(1/4).
+[[nodiscard]] double shellLengthRoot(const Material& material) noexcept;
+
 /// Lengths over which dents die away by themselves on an object, at places spread evenly over it.
 struct DentLengths {
     double least = 0, typical = 0, most = 0; ///< the median and the extremes [m]

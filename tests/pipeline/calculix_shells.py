@@ -13,9 +13,11 @@ held, so that on planes of symmetry they converge with their size alone.)
 
 import math
 import os
-import subprocess
 import sys
 from typing import Callable, NamedTuple
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+from calculix import run, work  # noqa: E402
 
 MODULUS, POISSON, FOOTPRINT = 1e6, 0.45, 4e-3  # [Pa], [1], [m]
 
@@ -314,22 +316,9 @@ def deck(mesh, shape, forces, load):
     return "\n".join(lines) + "\n"
 
 
-def run(folder, job, text):
-    """Runs a deck and returns the lines of its table of displacements, and what ccx said."""
-    path = os.path.join(folder, job)
-    with open(path + ".inp", "w") as file:
-        file.write(text)
-    done = subprocess.run(["ccx", job], cwd=folder, capture_output=True, text=True)
-    with open(path + ".dat") as file:
-        return [line.split() for line in file], done.stdout
-
-
 def depth(words, shape, forces):
     """What a line of displacements adds to the depth of the dent, the mean under the footprint [m]."""
-    if len(words) != 4 or not words[0].isdigit():
-        return 0.0
-    moved = sum(n * float(word) for n, word in zip(normal(shape.place, 0, 0), words[1:]))
-    return forces[int(words[0])] * -moved
+    return work(words, forces, [-n for n in normal(shape.place, 0, 0)])
 
 
 def compliance(folder, shape, cells):

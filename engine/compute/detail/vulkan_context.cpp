@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <memory>
+#include <mutex>
+#include <utility>
 #include <vector>
 
 #include "engine/compute/command_list.h"
@@ -18,6 +21,15 @@ constexpr double kPatienceHardware = 10;  // [s]
 constexpr double kPatienceSoftware = 300; // [s]
 
 std::atomic<bool> isDriverLeftAtWork{false};
+
+/// Keeps what a driver still works with; never destroyed, and no leak, because it can be reached.
+void keepForEver(std::unique_ptr<Instance> instance)
+{
+    static std::mutex     mutex;
+    static auto&          kept = *new std::vector<std::unique_ptr<Instance>>;
+    const std::lock_guard lock(mutex);
+    kept.push_back(std::move(instance));
+}
 
 const char* nameOf(VkResult result)
 {
@@ -78,7 +90,7 @@ VulkanContext::~VulkanContext()
 {
     if (atWork()) {
         isDriverLeftAtWork = true;
-        (void)instance.release();
+        keepForEver(std::move(instance));
         return;
     }
     if (fence) vkDestroyFence(device, fence, nullptr);

@@ -72,7 +72,7 @@ double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchS
     // Neither what bulges hardly more than one way, nor what is flat beside the body's size, is part of a dome.
     const double size   = object.cloud().bounds().diagonal() / 2;
     const double bulges = std::min(1.0, gaussian / largest / kOneWay - 1) * std::clamp(2 - radius / size, 0.0, 1.0);
-    const double length = std::sqrt(radius * object.material().thickness) / std::pow(12 * (1 - nu * nu), 0.25); // [m]
+    const double length = shellLengthRoot(object.material()) * std::sqrt(radius); // [m]
     const double rho    = std::pow(std::pow(0.95 * length, 4) + std::pow(0.43 * settings.footprintRadius, 4), 0.25);
     const double rim    = rimOf(object, patch.chart.frame.normal);
     if (!(rim < 1)) return 0;

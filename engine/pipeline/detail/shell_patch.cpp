@@ -13,13 +13,6 @@
 namespace palp {
 namespace {
 
-/// Returns the length of a shell over which a dent dies away, times the root of the curvature [m^(1/2)].
-double lengthRoot(const Material& material)
-{
-    const double nu = material.poissonRatio;
-    return std::sqrt(material.thickness) / std::pow(12 * (1 - nu * nu), 0.25);
-}
-
 /// Returns the principal curvatures of a tensor [1/m], the larger by size first.
 std::pair<double, double> principalOf(double x, double z, double xz)
 {
@@ -80,7 +73,7 @@ double meanOfSquares(const NodeField& field)
 double lengthOf(const Patch& patch, const Material& material, double foundation)
 {
     const auto [most, least] = patch.principal;
-    const double perRoot     = std::pow(lengthRoot(material), -4); // [1/m^2] of a curvature of 1/m
+    const double perRoot     = std::pow(shellLengthRoot(material), -4); // [1/m^2] of a curvature of 1/m
     const double ends =
         (least / most > kOneWay ? perRoot * most * least : 0) + foundation / rigidityAtContact(patch); // [1/m^4]
     return std::pow(ends > 0 ? ends : perRoot * most * most, -0.25);
@@ -104,7 +97,7 @@ std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject
                           {.spacing    = patch.spacing,
                            .noise      = noiseOf(object, points),
                            .mostRadius = settings.window / 2,
-                           .lengthRoot = lengthRoot(object.material())});
+                           .lengthRoot = shellLengthRoot(object.material())});
 }
 
 /// Fills in what the membrane gives way by.
