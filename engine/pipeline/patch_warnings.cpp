@@ -135,11 +135,12 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, double dee
     if (!(deepest > most)) return;
     const DepthLaw law  = depthLawOf(patch);
     const double   less = load * most / deepest;
+    // The middle of the dent is deeper than its mean, of which the law is.
     if (patch.large)
-        return result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds twice the thickness (" +
-                                formatQuantity(most, "m") +
-                                "), to which the law of large deflections is trusted; press with less than " +
-                                formatQuantity(patch.large->force.back(), "N"));
+        return result.push_back(
+            "the deflection of " + formatQuantity(deepest, "m") + " exceeds twice the thickness (" +
+            formatQuantity(most, "m") + "), to which the law of large deflections is trusted; press with less than " +
+            formatQuantity(patch.large->forceAt(most / (patch.large->tangent.front() * mostResponse(patch))), "N"));
     result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
                      formatQuantity(most, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
                      formatQuantity(patch.stiffening > 0 ? law.force(less / patch.feltStiffness) : less, "N"));

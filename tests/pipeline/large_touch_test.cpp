@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
@@ -7,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/core/quantity.h"
 #include "engine/pipeline/deform.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/patch_warnings.h"
@@ -55,6 +57,22 @@ Patch touched(const SoftObject& object, PatchSettings settings)
 
 const PatchSettings kPlate{.large = Large::on};
 const PatchSettings kShell{.theory = Theory::shell, .large = Large::on, .edges = kSupported};
+
+TEST(LargeTouch, SaysWhichForceStaysWithinItsLaw)
+{
+    const Patch patch = touched(dome(), kShell);
+    // The middle of a dent is deeper than its mean under the finger, of which the law is.
+    const double mean = patch.large->reach() / (patch.large->tangent.front() * mostResponse(patch)); // [m]
+    const double most = patch.large->forceAt(mean);                                                  // [N]
+    const auto   said = [&](double force) {
+        const auto sentences = warnings(patch, kShell, force, kSkin);
+        return std::ranges::any_of(sentences, [&](const std::string& s) {
+            return s.find("press with less than " + formatQuantity(most, "N")) != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(said(1.01 * most));
+    EXPECT_FALSE(said(0.99 * most));
+}
 
 TEST(LargeTouch, OffAndOnAgreeOnEverythingLinear)
 {

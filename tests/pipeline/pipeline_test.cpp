@@ -338,6 +338,11 @@ TEST(Pipeline, WhatTheDataOrTheWindowLimitsIsSaid)
     const Object sheet(makeSample(sampleNamed("sheet"), 500, 13));
     const Patch  sparse = sheet.touch({0, 0, 0}, {0, 0, 1}, {.window = 60e-3, .cells = 32});
     EXPECT_TRUE(warned(sparse, {.window = 60e-3, .cells = 32}, 0.1, "not in the data")) << "points 7 mm apart";
+    const Object        dense(makeSample(sampleNamed("sheet"), 40'000, 1));
+    const PatchSettings wideCells{.window = 60e-3, .cells = 16};
+    const Patch         averaged = dense.touch({0, 0, 0}, {0, 0, 1}, wideCells);
+    EXPECT_TRUE(warned(averaged, wideCells, 0.1, "take more cells")) << "3.75 mm wide";
+    EXPECT_FALSE(warned(averaged, wideCells, 0.1, "not in the data"));
     EXPECT_TRUE(warned(sparse, {.window = 60e-3, .cells = 32}, 0.1, "no foundation"));
 
     PatchSettings open = kCoarse;

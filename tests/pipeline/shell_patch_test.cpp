@@ -126,6 +126,14 @@ TEST(ShellPatch, ABowlIsAsStiffAsTheDomeThatItIsTheInsideOf)
     EXPECT_NEAR(bowl.compliance / dome.compliance, 1, 0.01); // the same points, other balls about the contact
 }
 
+TEST(ShellPatch, WhatIsHardlyCurvedIsToldNoWindow)
+{
+    const Patch patch = touchOf(sheet([](double x, double y) { return -(x * x + y * y) / 20; }), {}); // R 10 m
+    ASSERT_TRUE(patch.curvature.has_value()) << patch.flatBecause;
+    EXPECT_TRUE(warned(patch, kShell, "hardly curved"));
+    EXPECT_FALSE(warned(patch, kShell, "try a --window")) << "one of half a metre";
+}
+
 TEST(ShellPatch, WhatIsFlatTakesThePlatesPathToTheBit)
 {
     const SoftObject flat  = sheet([](double, double) { return 0.0; });
