@@ -60,14 +60,15 @@ TEST(BodyGive, IsMembraneTheorysOfASphereHeldBelowItsWidest)
     EXPECT_GT(bodyCompliance(touched(-20, -20), closed, settings), 0) << "pressed from within";
 }
 
-/// The wall of a cut rim, which turns farther than what it is cut from, is a small share of the points.
+/// The wall of a cut rim turns farther than what it is cut from; it is a small share of the points.
 TEST(BodyGive, IsNothingForACapWhoseRimHasAWall)
 {
     const SoftObject        cap = sphere(0.08); // 37 degrees
     std::vector<glm::dvec3> points(cap.positions().begin(), cap.positions().end());
-    for (int n = 0; n < 400; ++n) // a tenth, 4 mm high, straight outwards from the rim's edge
-        points.push_back((0.1 + 1e-5 * (n % 20 * 20)) *
-                         glm::dvec3(0.6 * std::cos(n * 0.0157), 0.6 * std::sin(n * 0.0157), 0.8));
+    for (int n = 0; n < 400; ++n) { // a tenth, 6 mm high, straight down from the rim
+        const double along = n * 0.6180339887 * 2 * std::numbers::pi;
+        points.emplace_back(0.06 * std::cos(along), 0.06 * std::sin(along), 0.08 - 6e-3 * n / 400);
+    }
     const std::size_t count = points.size();
     const SoftObject  walled(PointCloud(std::move(points), std::vector<double>(count, 1e6), StiffnessKind::modulus),
                              {.thickness = 1e-3, .poissonRatio = 0.45});
