@@ -227,12 +227,6 @@ Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const
 
 constexpr double kRung = 1e-3, kRungs = 1.3; ///< the first radius [m]; their ratio [1]
 
-/// Returns where a radius is on the ladder, between two rungs.
-double rungOf(double radius)
-{
-    return std::log(radius / kRung) / std::log(kRungs);
-}
-
 /// Finds the curvature with fits of a radius, between those of two rungs; empty where there are none.
 Lattice latticeBetween(const PatchWindow& window, int side, const Frame& frame, const CurvatureSites& sites,
                        double radius)
@@ -341,6 +335,11 @@ CurvatureField interpolated(const PatchWindow& window, const std::vector<ChartTe
 double rungRadius(int rung) noexcept
 {
     return kRung * std::pow(kRungs, rung);
+}
+
+double rungOf(double radius) noexcept
+{
+    return std::log(radius / kRung) / std::log(kRungs);
 }
 
 // Heights less K(a, a) |K a|^2 / 8, which a sphere and a cylinder have beyond a quadric, were tried: fits of up to 0.9 of their

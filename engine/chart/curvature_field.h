@@ -60,6 +60,9 @@ using CurvatureSites = std::function<std::vector<CurvatureSite>(int rung, FitsFo
 /// can be taken; a window asks for the two rungs about its own radius.
 [[nodiscard]] double rungRadius(int rung) noexcept;
 
+/// Returns where a radius [m] is on the ladder, between two rungs.
+[[nodiscard]] double rungOf(double radius) noexcept;
+
 /// Finds the curvature at the nodes of a window from fits at sites that do not depend on where the window lies.
 ///
 /// The fits of a window have one radius: as small as noise permits, which may change the tensor by 2.5 % of what is typical

@@ -97,7 +97,8 @@ std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& 
     if (const double bias = fitBias(radius, larger, smaller); bias > kMostFitBias)
         said.push_back(onSparse(patch.spacing, larger, bias));
     if (object.mesh().faces.empty()) return said;
-    if (const double facet = facetWidth(object.mesh(), patch.contact.point, radius); facet > radius)
+    constexpr double kBeside = 2; // radii: in the middle of a facet its neighbours are farther than one [1]
+    if (const double facet = facetWidth(object.mesh(), patch.contact.point, kBeside * radius); facet > radius)
         said.push_back(
             "the facets of the mesh are " + formatQuantity(facet, "m") + " wide and its curvature is fitted within " +
             formatQuantity(radius, "m") +

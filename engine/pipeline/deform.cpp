@@ -20,6 +20,7 @@
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/touched_surface.h"
 #include "engine/pipeline/detail/whole_object.h"
+#include "engine/pipeline/detail/window_turn.h"
 #include "engine/plate/load.h"
 
 // The paper's section 2. Each step fills in its part of the patch; deform() below gives their order.
@@ -332,9 +333,11 @@ Laid layFlat(Patch& patch, const SoftObject& object, const Ball& ball, TouchedSu
              const PatchSettings& settings, const std::optional<Frame>& carried)
 {
     const StageClock clock(patch.times.project);
-    patch.chart = chartAt(patch, object, settings, carried);
+    patch.chart       = chartAt(patch, object, settings, carried);
+    patch.flatBecause = whyFlat(patch, object, settings);
     if (settings.neighbourhood == Neighbourhood::ball) return layBall(patch, ball, object);
     if (glm::dot(surface.normal, patch.chart.frame.normal) < 0) surface.turnOver(); // the finger's side was a guess
+    if (patch.flatBecause.empty()) patch.chart.frame = turnedToBend(patch.chart, object, surface, settings);
     patch.unrolled = unrolledShare(patch, surface, settings);
     if (patch.unrolled == 0 && surface.allFace() && projectWhole(patch, surface)) {
         patch.points  = ball.points;

@@ -19,10 +19,9 @@ constexpr std::size_t kPlaces = 48;
 
 /// How the surface bends about a place.
 struct Bend {
-    std::uint32_t point    = 0; ///< of the object
-    double        gaussian = 0; ///< curvature [1/m^2]
-    double        largest  = 0; ///< of the principal curvatures, by size [1/m]
-    double        area     = 0; ///< that it stands for beside the others: the point's own [m^2]
+    std::uint32_t point = 0;           ///< of the object
+    double        most = 0, least = 0; ///< principal curvatures, the larger by size first [1/m]
+    double        area = 0;            ///< that it stands for beside the others: the point's own [m^2]
 };
 
 /// A value and how much it counts.
@@ -57,8 +56,8 @@ std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& setting
         }
         const auto found = faceCurvature(object, object.positions()[point], object.survey().normal(point), radius);
         if (!found) continue;
-        const auto [larger, smaller] = principalOf(*found);
-        bends.push_back({point, larger * smaller, std::abs(larger), area});
+        const auto [most, least] = principalOf(*found);
+        bends.push_back({point, most, least, area});
     }
     return bends;
 }
@@ -100,25 +99,27 @@ double foundationWindowOf(const SoftObject& object)
     return foundationWindow(least, most);
 }
 
-std::optional<DentLengths> lengthsOf(const SoftObject& object, const PatchSettings& settings,
-                                     const std::vector<Bend>& bends)
+/// What the dents of an object ask for, and of how much of it: the others reach as far as the object.
+struct Ending {
+    DentLengths lengths;   ///< where dents end
+    double      share = 0; ///< of the surface [1]
+};
+
+Ending endingOf(const SoftObject& object, const PatchSettings& settings, const std::vector<Bend>& bends)
 {
     // Curvature that adds less to a foundation is none; widths up to twice the median, because the poles of flat spheroids need
     // 1.45 and the median of 48 places is right to a tenth [1].
     constexpr double     kFlat = 1e-6, kTypical = 0.5, kFlatter = 2, kSpare = 1.05; // of the mean rigidity's width [1]
-    const Material&      material = object.material();
-    const double         nu = material.poissonRatio, h = material.thickness;
+    const Material&      material     = object.material();
+    const double         perRoot      = std::pow(shellLengthRoot(material), -4); // [1/m^2] of a curvature of 1/m
     const double         onFoundation = settings.foundation > 0 ? kSpare * foundationWindowOf(object) : 0;
     const auto           sample       = sampleOf(object);
     std::vector<Weighed> lengths, widths;    // [m]
     double               all = 0, ended = 0; // [m^2]
     for (const Bend& bend : bends) {
-        // What is curved one way ends nothing, whichever side of it the fits' noise says that it bends to the other way.
-        const bool   bulges    = bend.gaussian > kOneWay * bend.largest * bend.largest;
-        const double perSquare = 12 * (1 - nu * nu) / (h * h);
-        const double below     = settings.foundation / object.rigidity(bend.point); // [1/m^4]
-        const double length    = std::pow(perSquare * (bulges ? bend.gaussian : 0) + below, -0.25);
-        const bool   isFlat    = perSquare * bend.largest * bend.largest < kFlat * below;
+        const double below        = settings.foundation / object.rigidity(bend.point); // [1/m^4]
+        const auto [length, wide] = dentReach(bend.most, bend.least, material, below);
+        const bool isFlat         = perRoot * bend.most * bend.most < kFlat * below;
         all += bend.area;
         if (!(length < object.cloud().bounds().diagonal())) continue;
         ended += bend.area;
@@ -126,14 +127,15 @@ std::optional<DentLengths> lengthsOf(const SoftObject& object, const PatchSettin
         // What is flat feels the mean of the rigidity in its window, as the warnings count it.
         widths.push_back({isFlat ? onFoundation * meanLength(object, sample, bend.point, onFoundation * length / 2,
                                                              settings.foundation)
-                                 : kLocalWindow * length,
+                                 : wide * length,
                           bend.area});
     }
-    if (lengths.empty() || 2 * ended < all) return {};
+    if (lengths.empty()) return {};
     const auto [least, most] = std::ranges::minmax(lengths, {}, &Weighed::value);
     const double widest      = std::ranges::max(widths, {}, &Weighed::value).value;
-    return DentLengths{least.value, quantileOf(lengths, kTypical), most.value,
-                       std::min(widest, kFlatter * quantileOf(widths, kTypical))};
+    return {{least.value, quantileOf(lengths, kTypical), most.value,
+             std::min(widest, kFlatter * quantileOf(widths, kTypical))},
+            ended / all};
 }
 
 /// Returns the width of a window that sags no more than it may at nearly all places [m].
@@ -142,7 +144,7 @@ double shallowWindow(const std::vector<Bend>& bends)
     constexpr double kNearly = 0.95; // rims and tips bend as sharply as the fits can tell [1]
     if (bends.empty()) return std::numeric_limits<double>::infinity();
     std::vector<Weighed> largest; // [1/m]
-    for (const Bend& bend : bends) largest.push_back({bend.largest, bend.area});
+    for (const Bend& bend : bends) largest.push_back({std::abs(bend.most), bend.area});
     return 8 * kMostSag / quantileOf(std::move(largest), kNearly);
 }
 
@@ -195,36 +197,57 @@ struct Choice {
 };
 
 /// Chooses a width where dents end by themselves.
-Choice chosenBy(const DentLengths& lengths, const SoftObject& object, double least)
+Choice chosenBy(const DentLengths& lengths, const SoftObject& object, const PatchSettings& settings, double least)
 {
+    constexpr double  kCells = 1.25; // that a fingertip's radius spans at least: what is felt is then right to 2 % [1]
     const std::string reach  = "dents of this object, which die away over " + formatQuantity(lengths.typical, "m");
-    const double      filled = widthOfObject(object);
-    const double      width  = std::min(lengths.window, filled);
+    const std::string asked  = reach + ", ask for " + formatQuantity(lengths.window, "m");
+    const double      filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kCells;
+    const double      width = std::min({lengths.window, filled, carried});
     if (width < least) return {least, "four radii of the fingertip, because " + reach + ", ask for less"};
-    if (filled < lengths.window)
-        return {width, "as wide as the object is about its middle, where " + reach + ", ask for " +
-                           formatQuantity(lengths.window, "m")};
+    if (width == carried)
+        return {width, "as wide as " + std::to_string(settings.cells) + " cells carry this fingertip, where " + asked +
+                           "; take more cells"};
+    if (width == filled) return {width, "as wide as the object is about its middle, where " + asked};
     return {width, "as wide as " + reach + ", ask for at nearly all places"};
+}
+
+/// Chooses a width of a shell where supports decide.
+Choice unendedChoice(const PatchSettings& settings, const std::vector<Bend>& bends, double least)
+{
+    const std::string why = "because nothing ends the dents of what is curved one way, against each other or hardly at "
+                            "all; see the support "
+                            "range";
+    const double      shallow = std::max(shallowWindow(bends), least);
+    if (shallow < settings.window) return {shallow, "as deep as the theory of shallow shells allows, " + why};
+    return {settings.window, "the width without auto, " + why};
 }
 
 Choice chosen(const SoftObject& object, const PatchSettings& settings)
 {
+    constexpr double kMixed =
+        0.65; // of the surface, from which on dents end, and of the rest from which on none do [1]
     const auto   bends = bendsOf(object, settings);
     const double least = 4 * settings.footprintRadius;
     // A dent that dies away hardly feels what is steep, see patch_warnings.cpp, and would feel edges that are nearer.
-    if (const auto lengths = lengthsOf(object, settings, bends)) return chosenBy(*lengths, object, least);
+    const auto [lengths, share] = endingOf(object, settings, bends);
+    if (share >= kMixed) return chosenBy(lengths, object, settings, least);
     if (settings.theory == Theory::plate)
         return {settings.window,
                 "the width without auto, because nothing ends the dents of a plate " +
                     std::string(settings.foundation > 0 ? "on so soft a foundation" : "without a foundation") +
                     ": this width decides what is felt; set a --window, a --foundation or, where the "
                     "surface is curved, --theory shell"};
-    const std::string unended =
-        "because nothing ends the dents of what is curved one way, against each other or hardly at all; ";
-    const double shallow = std::max(shallowWindow(bends), least);
-    if (shallow < settings.window)
-        return {shallow, "as deep as the theory of shallow shells allows, " + unended + "see the support range"};
-    return {settings.window, "the width without auto, " + unended + "see the support range"};
+    const Choice unended = unendedChoice(settings, bends, least);
+    if (share <= 1 - kMixed) return unended;
+    // Which half is the larger hangs on a few places, and what is felt should not: in between it goes over from one width to
+    // the other.
+    const Choice ended = chosenBy(lengths, object, settings, least);
+    const double part  = (share - (1 - kMixed)) / (2 * kMixed - 1);
+    return {std::exp(std::lerp(std::log(unended.width), std::log(ended.width), part)),
+            "between " + formatQuantity(unended.width, "m") + " and " + formatQuantity(ended.width, "m") +
+                ", because dents die away by themselves on " + std::to_string(std::lround(100 * share)) +
+                " % of this object and reach far on the rest of it; see the support range"};
 }
 
 } // namespace
@@ -235,9 +258,24 @@ double shellLengthRoot(const Material& material) noexcept
     return std::sqrt(material.thickness) / std::pow(12 * (1 - nu * nu), 0.25);
 }
 
+DentReach dentReach(double most, double least, const Material& material, double below) noexcept
+{
+    constexpr double kAlike = 2, kFarther = 0.7; // ratio of the curvatures; power, see DentReach [1]
+    // What is curved one way ends nothing, whichever side of it the fits' noise says that it bends to the other way.
+    const bool   bulges  = least * most > kOneWay * most * most;
+    const double perRoot = bulges ? std::pow(shellLengthRoot(material), -4) : 0; // [1/m^2] of a curvature of 1/m
+    const double ends    = perRoot * most * least + below;                       // [1/m^4]
+    if (!(ends > 0)) return {std::numeric_limits<double>::infinity()};
+    const double unlike = ends / (perRoot * least * least + below); // of the softest wave
+    return {std::pow(ends, -0.25), kLocalWindow * std::max(1.0, std::pow(unlike / kAlike, kFarther))};
+}
+
 std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings)
 {
-    return lengthsOf(object, settings, bendsOf(object, settings));
+    constexpr double kMost  = 0.5; // of the surface [1]
+    const Ending     ending = endingOf(object, settings, bendsOf(object, settings));
+    if (ending.share < kMost) return {};
+    return ending.lengths;
 }
 
 double dentWindow(const SoftObject& object, const PatchSettings& settings)

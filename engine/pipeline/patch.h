@@ -49,7 +49,7 @@ constexpr auto namesOf(Theory)
 enum class WindowOf {
     contact, ///< a square of fixed size about the contact, whose sides hold it: the paper's
     object, ///< the whole object, as far as the chart can carry it: its own borders are free, and what is held holds it
-    dent    ///< a square of 8 lengths over which a dent of this object dies away, see dentLengths()
+    dent    ///< a square of 8 or more lengths over which a dent of this object dies away, see dentWindow()
 };
 constexpr auto namesOf(WindowOf)
 {

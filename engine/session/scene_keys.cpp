@@ -403,7 +403,8 @@ SceneKey windowKey(const Control& control)
         {.name  = "window",
          .help  = "edge of the patch window, the square of surface that bends with the finger; or object: all of the "
                   "object bends, free at its borders and held where the key held says so; or auto, which shells have: "
-                  "8 lengths over which dents of this object die away, 10 or 12 where a foundation ends them, and where "
+                  "8 lengths over which dents of this object die away, more where it is curved unequally both ways, 10 "
+                  "or 12 where a foundation ends them, and where "
                   "nothing does the width without auto; palpate touch says which",
          .group = kTouch,
          .unit  = "m",

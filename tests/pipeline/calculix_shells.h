@@ -15,11 +15,13 @@ struct CalculixShell {
 };
 
 /// Pressed as calculix_shells.py says.
-inline constexpr std::array<CalculixShell, 25> kCalculixShells{{
+inline constexpr std::array<CalculixShell, 29> kCalculixShells{{
     {"sphere", 0.001, 61.997, 3.6e-04},     {"sphere", 0.002, 216.63, 6.9e-04},
     {"sphere", 0.003, 451.4, 9.5e-04},      {"ellipsoid", 0.001, 38.496, 6.9e-04},
     {"ellipsoid", 0.002, 140.41, 1.2e-03},  {"ellipsoid", 0.003, 301.1, 1.9e-03},
     {"shoulder", 0.001, 58.075, 1.1e-03},   {"shoulder", 0.002, 200.95, 2.1e-03},
+    {"side", 0.001, 66.749, 6.0e-04},       {"side", 0.002, 232.75, 1.0e-03},
+    {"cigar", 0.001, 36.586, 1.3e-03},      {"cigar", 0.002, 141.24, 4.1e-03},
     {"slope", 0.001, 36.723, 1.3e-03},      {"wart_under", 0.001, 141.72, 6.1e-04},
     {"wart_under", 0.002, 433.67, 1.3e-03}, {"wart_beside", 0.001, 95.252, 4.9e-04},
     {"soft_spot", 0.001, 37.803, 5.4e-04},  {"tube", 0.001, 27.166, 1.3e-03},

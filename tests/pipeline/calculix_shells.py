@@ -104,6 +104,8 @@ def slope(length):
 AXES = (60e-3, 45e-3, 35e-3)
 ROUND = azimuthal((50e-3, 50e-3, 50e-3), 1.75)
 EGG = azimuthal(AXES, 1.75)
+SIDE = azimuthal((60e-3, 35e-3, 45e-3), 1.75)
+CIGAR = azimuthal((80e-3, 30e-3, 30e-3), 1.75)
 SHOULDER = azimuthal(AXES, 1.75, math.pi / 4)
 TUBE = turned(lambda y: 40e-3, 80e-3)
 WAIST = turned(lambda y: 120e-3 - math.sqrt(80e-3**2 - y**2), 80e-3)
@@ -144,6 +146,10 @@ OBJECTS = [
     Shape("ellipsoid", EGG, even, 3e-3),
     Shape("shoulder", SHOULDER, even, 1e-3, mirrored=False),
     Shape("shoulder", SHOULDER, even, 2e-3, mirrored=False),
+    Shape("side", SIDE, even, 1e-3),
+    Shape("side", SIDE, even, 2e-3),
+    Shape("cigar", CIGAR, even, 1e-3, last=1.2),
+    Shape("cigar", CIGAR, even, 2e-3, last=1.2),
     Shape("slope", EGG, slope(66e-3), 1e-3, mirrored=False),
     Shape("wart_under", ROUND, spot(10, 0), 1e-3),
     Shape("wart_under", ROUND, spot(10, 0), 2e-3),

@@ -31,7 +31,7 @@ struct Object {
     std::function<glm::dvec3(double, double)> place;
     double                                    sizeX = 0, sizeY = 0; ///< about, along both [m]
     double                                    spot = 1, off = 0;    ///< times stiffer [1], beside the touch [m]
-    double                                    window = 40e-3;       ///< [m]
+    double                                    window = 40e-3;       ///< [m]; 0: as its dents ask for
     double                                    slope  = 0;           ///< of the modulus along x, over its mean [1/m]
     glm::dvec3                                touch{};              ///< [m]; 0: where the surface is at x = y = 0
     glm::dvec3                                outward{0, 0, 1};
@@ -72,6 +72,8 @@ Object curvedObject(std::string_view name)
         return {cap(round), 0.154, 0.154, 1, 0, 60e-3}; // 8 lengths of the thickest, as of the spots and the shoulder
     // Unlike curvatures reach farther: 12 to 20 lengths.
     if (name == "ellipsoid") return {cap(axes), 0.184, 0.138, 1, 0, 100e-3};
+    if (name == "side") return {cap({axes.x, axes.z, axes.y}), 0.184, 0.138, 1, 0, 0};
+    if (name == "cigar") return {cap({80e-3, 30e-3, 30e-3}), 0.2, 0.138, 1, 0, 0};
     if (name == "slope") return {cap(axes), 0.184, 0.138, 1, 0, 100e-3, 1 / 66e-3};
     if (name == "wart_under") return {cap(round), 0.154, 0.154, 10, 0, 60e-3};
     if (name == "wart_beside") return {cap(round), 0.154, 0.154, 10, 8e-3};
@@ -186,6 +188,7 @@ PatchSettings settingsOf(const Object& object, Theory theory, Edge edge)
     PatchSettings settings{.window = object.window, .theory = theory};
     settings.edges = {edge, edge, edge, edge};
     if (object.window > 50e-3) settings.cells = 128;
+    if (object.window == 0) settings.window = 40e-3, settings.windowOf = WindowOf::dent;
     return settings;
 }
 
@@ -211,11 +214,14 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
         if (kindOf(of.name) != Kind::curved) continue;
         const double felt = feltBy(Theory::shell, Edge::supported, of) / of.stiffness - 1;
         const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: spheres -1.0 to 0.1 %, ellipsoids 1.3 to 1.6, slope 3, at the shoulder 2.5 and 4.5, spots -3 to 2. Without
-        // what the whole body gives way by, and with the squeeze left out, it was 3 to 4, 3 to 5, 6 to 10 and 2 to 9.
+        // Measured: spheres -1.0 to 0.1 %, ellipsoids 0.5 to 0.9, slope 1.5, at the shoulder 2.5 and 4.5, spots -3 to 2; in the
+        // windows that their dents ask for the side of an ellipsoid 3.6 and 4.8, that of a cigar, which is much steeper than
+        // shallow shells, 3.6 and 7.6. Without what the whole body gives way by, and with the squeeze left out, it was 3 to
+        // 4, 3 to 5, 6 to 10 and 2 to 9; with the window's sides along the principal directions ellipsoids were 1.3 to 1.6.
         std::printf("  %s, %.0f mm: shell %+.1f %%, flat plate %+.1f %%\n", std::string(of.name).c_str(),
                     1e3 * of.thickness, 100 * felt, 100 * flat);
-        EXPECT_LT(std::abs(felt), of.name == "sphere" ? 0.03 : 0.05) << of.name << ", " << of.thickness << " m";
+        const double most = of.name == "sphere" ? 0.03 : of.name == "cigar" ? 0.1 : 0.05;
+        EXPECT_LT(std::abs(felt), most) << of.name << ", " << of.thickness << " m";
         EXPECT_GT(std::abs(flat), 0.2) << of.name << ": then nothing is shown";
     }
 }

@@ -1,5 +1,6 @@
 #include "engine/pipeline/dent_length.h"
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -150,6 +151,46 @@ TEST(DentLength, OfATubeIsUnknownHoweverItsPointsAreDrawn)
         EXPECT_NEAR(settledFor(tube, settings).window, 2 * kRadius, 0.15 * kRadius)
             << "what sags a quarter of its width";
     }
+}
+
+TEST(DentLength, UnlikeCurvaturesReachFarther)
+{
+    const double root = shellLengthRoot(kSheet);
+    EXPECT_NEAR(dentReach(20, 20, kSheet, 0).length, root / std::sqrt(20), 1e-12);
+    EXPECT_EQ(dentReach(20, 10, kSheet, 0).window, kLocalWindow);
+    EXPECT_NEAR(dentReach(-40, -10, kSheet, 0).window, kLocalWindow * std::pow(2, 0.7), 1e-9);
+    EXPECT_NEAR(dentReach(-40, -10, kSheet, 0).length, root / std::sqrt(20), 1e-12);
+    EXPECT_EQ(dentReach(40, 10, kSheet, 1e9 * std::pow(root, -4)).window, kLocalWindow) << "what lies below is alike";
+    for (const double least : {3.9, 0.0, -40.0})
+        EXPECT_TRUE(std::isinf(dentReach(40, least, kSheet, 0).length)) << least;
+    EXPECT_NEAR(dentReach(40, -40, kSheet, 1e8).length, 1e-2, 1e-12) << "of the foundation alone";
+}
+
+/// Dents end on the outer half of a ring, and reach far on the inner one: which is the larger hangs on the places that are
+/// looked at, and these on nothing that is felt.
+TEST(DentLength, OfARingIsTheSameHoweverItIsTurned)
+{
+    PatchSettings settings = shell();
+    settings.windowOf      = WindowOf::dent;
+    std::vector<double> widths;
+    for (const double turn : {0.0, 0.4, 0.8, 1.2, 1.6, 2.0}) {
+        std::vector<glm::dvec3> points;
+        for (int i = 0; i < 94; ++i) {
+            const double around = 2 * std::numbers::pi * i / 94, r = 40e-3 + 15e-3 * std::cos(around);
+            const int    count = int(2 * std::numbers::pi * r / 1e-3);
+            for (int n = 0; n < count; ++n) {
+                const double a = 2 * std::numbers::pi * (n + 0.618 * i) / count;
+                const double x = r * std::cos(a), y = r * std::sin(a), z = 15e-3 * std::sin(around);
+                points.emplace_back(x, y * std::cos(turn) - z * std::sin(turn),
+                                    y * std::sin(turn) + z * std::cos(turn));
+            }
+        }
+        std::vector<double> stiffness(points.size(), 1e6);
+        const SoftObject    ring(PointCloud(std::move(points), std::move(stiffness), StiffnessKind::modulus), kSheet);
+        widths.push_back(settledFor(ring, settings).window);
+        EXPECT_NE(whyDentWindow(ring, settings).find("% of this object"), std::string::npos);
+    }
+    EXPECT_LT(std::ranges::max(widths) / std::ranges::min(widths), 1.08) << "a few of 48 places more or less";
 }
 
 TEST(DentLength, NoWindowIsWiderThanTheObject)

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <gtest/gtest.h>
 
 #include "engine/core/quantity.h"
@@ -76,10 +77,10 @@ SoftObject sheet(const std::function<double(double, double)>& height, double noi
 }
 
 Patch touchOf(const SoftObject& object, const glm::dvec3& place, const PatchSettings& settings = kShell,
-              const std::optional<Frame>& carried = {})
+              const std::optional<Frame>& carried = {}, const glm::dvec3& from = {0, 0, 1})
 {
     PlateSolver host("host");
-    return deform(object, touchAt(object, place, glm::dvec3(0, 0, 1), 10e-3), settings, host, carried);
+    return deform(object, touchAt(object, place, from, 10e-3), settings, host, carried);
 }
 
 /// The compliance of a shell of constant curvature in the window [m/N].
@@ -176,7 +177,7 @@ TEST(ShellPatch, FeelsHardlyAnyScatterOfThePoints)
     };
     const std::vector<double> quiet = feltAlong(ellipsoid(oval, 0), overOval);
     for (const double noise : {0.0, 0.3e-3}) {
-        // Measured: below 0.001, and 0.11 to 0.13 with noise; along a crest, where the chart adds some, 0.24 and 0.38.
+        // Measured: below 0.001, and 0.05 to 0.11 with noise; along a crest, where the chart adds some, 0.35 and 0.37.
         const double most = noise > 0 ? 0.2 : 0.01;
         report("sphere", noise,
                stepsOf(feltAlong(ellipsoid(glm::dvec3(50e-3), noise),
@@ -186,7 +187,7 @@ TEST(ShellPatch, FeelsHardlyAnyScatterOfThePoints)
                most);
         report("ridge", noise,
                stepsOf(feltAlong(sheet(ridge, noise), [](double y) { return glm::dvec3(0, y, kCrest); })),
-               noise > 0 ? 0.5 : 0.3);
+               0.5);
         std::vector<double> scattered = feltAlong(ellipsoid(oval, noise), overOval);
         for (std::size_t n = 0; n < quiet.size(); ++n) scattered[n] -= quiet[n]; // what is felt of its shape
         report("ellipsoid", noise, stepsOf(scattered), most);
@@ -252,13 +253,33 @@ TEST(ShellPatch, AFewHundredOfManyPointsSayHowASurfaceBends)
     EXPECT_NEAR(dense.compliance / sparse.compliance, 1, 2e-3);
 }
 
-TEST(ShellPatch, TheChartsAxesDoNotMatterButForTheSquareWindow)
+/// The square window stands on the object and not on the chart's axes, which hang on the way of the hand to the place.
+TEST(ShellPatch, NeitherTheChartsAxesNorTheObjectsTurnMatter)
 {
-    const SoftObject object = ellipsoid({60e-3, 45e-3, 35e-3}, 0);
-    const Patch      one    = touchOf(object, {0, 0, 35e-3});
-    const Patch      turned = touchOf(object, {0, 0, 35e-3}, kShell, one.chart.frame.turned(3.14159265 / 4));
-    EXPECT_NEAR(turned.compliance / one.compliance, 1, 0.03); // the square itself
-    EXPECT_NEAR(turned.curvature->xz(32, 32), (one.curvature->x(32, 32) - one.curvature->z(32, 32)) / -2, 0.2);
+    const glm::dvec3 axes(60e-3, 45e-3, 35e-3);
+    const SoftObject object = ellipsoid(axes, 0);
+    for (const glm::dvec3 direction : {glm::dvec3(0, 0, 1), glm::dvec3(0.3, 0.5, 1)}) {
+        const glm::dvec3 place = axes * glm::normalize(direction);
+        const Patch      one   = touchOf(object, place);
+        const double     x = one.curvature->x(32, 32), z = one.curvature->z(32, 32), xz = one.curvature->xz(32, 32);
+        EXPECT_LT(std::abs(x - z) / 2, 0.1 * std::abs(xz)) << "the corners lie along the principal directions";
+        for (const double turn : {0.3, 0.785, 1.2}) {
+            const Patch turned = touchOf(object, place, kShell, one.chart.frame.turned(turn));
+            EXPECT_NEAR(turned.compliance / one.compliance, 1, 1e-4) << turn << ": twice the tolerance of the solver";
+            const glm::dvec3        normal = one.chart.frame.normal;
+            const glm::dmat3        about  = glm::mat3_cast(glm::angleAxis(turn, normal));
+            std::vector<glm::dvec3> points;
+            for (const glm::dvec3& p : object.positions()) points.push_back(about * p);
+            const SoftObject other = objectOf(std::move(points));
+            EXPECT_NEAR(touchOf(other, about * place, kShell, {}, normal).compliance / one.compliance, 1, 2e-3)
+                << turn << ": other sites have fits";
+        }
+    }
+    PatchSettings held = kShell;
+    held.edges         = {Edge::clamped, Edge::clamped, Edge::clamped, Edge::clamped};
+    const Frame as     = Frame::about({0, 0, 1}).turned(0.3);
+    EXPECT_NEAR(glm::dot(touchOf(object, {0, 0, axes.z}, held, as).chart.frame.east, as.east), 1, 1e-3)
+        << "sides that somebody laid stay where they are";
 }
 
 TEST(ShellPatch, TablesOfHomogeneousDomesAreFlat)
@@ -395,9 +416,10 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     };
     EXPECT_FALSE(says("too deep", sagging(0.254, 100))) << "25 % is what may be";
     EXPECT_TRUE(says("it sags 25.6 %", sagging(0.256, 100)));
-    EXPECT_TRUE(says("too soft by up to 4 %", sagging(0.5, 51)));
-    EXPECT_TRUE(says(("a --window of " + formatQuantity(20e-3, "m")).c_str(), sagging(0.5, 49)));
-    EXPECT_TRUE(says("too soft by up to 100 %", sagging(0.5, 49)));
+    EXPECT_TRUE(says("felt within some 10 %", sagging(0.5, 11)));
+    EXPECT_FALSE(says("too soft", sagging(0.5, 11))) << "no narrower window is nearer to the truth";
+    EXPECT_TRUE(says(("a --window of " + formatQuantity(20e-3, "m")).c_str(), sagging(0.5, 9)));
+    EXPECT_TRUE(says("too soft by up to 100 %", sagging(0.5, 9)));
     const auto thick = [](double h) { return [=](Patch& p) { p.thickness = h; }; };
     EXPECT_FALSE(says("as thick as its radius", thick(4.9e-3))) << "R is 50 mm";
     EXPECT_TRUE(says("is 10.2 % as thick as its radius", thick(5.1e-3)));
@@ -433,14 +455,14 @@ TEST(ShellPatch, AWindowThatIsTooDeepIsOffByNoMoreThanItSays)
         deep.window       = 8 * sag * 20e-3;
         deep.cells        = int(std::lround(deep.window / 10e-3)) * 16;
         const Patch patch = touchOf(object, {0, 0, 20e-3}, deep);
-        EXPECT_TRUE(warned(patch, deep, "may be felt too soft"));
+        EXPECT_TRUE(warned(patch, deep, "it sags"));
         return patch.compliance / touchOf(object, {0, 0, 20e-3}, within).compliance - 1;
     };
     const SoftObject ball = ellipsoid(glm::dvec3(20e-3), 0), tube = tubeOf20();
     for (const double sag : {0.3, 0.5}) {
         const double round = softer(ball, sag), oneWay = softer(tube, sag);
         std::printf("  sag %.1f: sphere %+.2f %%, tube %+.0f %%\n", sag, 100 * round, 100 * oneWay);
-        EXPECT_LT(std::abs(round), 0.04);
+        EXPECT_LT(std::abs(round), 0.01);
         EXPECT_GT(oneWay, 0.1) << "the direction that is told";
         EXPECT_LT(oneWay, sag / 0.25 - 1);
     }
@@ -459,7 +481,8 @@ TEST(ShellPatch, AWindowThatNobodyFixedStaysWithinTheTheory)
     EXPECT_NEAR(settledFor(tube, settings).window, 70e-3, 1e-9) << "a plate has no depth";
 }
 
-/// Dents of what is round die away before it is steep, so that its tips set no limit, see tooDeep() of the warnings.
+/// Dents of what is round die away before it is steep, so that its tips set no limit, see tooDeep() of the warnings; and on
+/// its sides, which bend nine times as much one way as the other, they reach far.
 TEST(ShellPatch, ATipThatIsSteepKeepsNoWindowNarrow)
 {
     const SoftObject cigar    = ellipsoid({60e-3, 20e-3, 20e-3}, 0);
@@ -467,8 +490,12 @@ TEST(ShellPatch, ATipThatIsSteepKeepsNoWindowNarrow)
     settings.windowOf         = WindowOf::dent;
     settings.footprintRadius  = 2e-3;
     const double wanted       = dentLengths(cigar, settings).value().window;
-    ASSERT_LT(wanted, 40e-3) << "which half of its places allow: its sides have a radius of 20 mm, its tips of 7";
-    EXPECT_NEAR(settledFor(cigar, settings).window, wanted, 1e-9);
+    EXPECT_NEAR(wanted / (shellLengthRoot(cigar.material()) / std::sqrt(std::sqrt(50 * 5.556))), 8 * std::pow(4.5, 0.7),
+                1)
+        << "22.9 lengths";
+    EXPECT_GT(settledFor(cigar, settings).window, 70e-3) << "as wide as this half of it";
+    settings.cells = 32;
+    EXPECT_NEAR(settledFor(cigar, settings).window, 32 * 2e-3 / 1.25, 1e-9) << "what cells carry a fingertip";
 }
 
 TEST(ShellPatch, CurvatureIsKeptForOneThickness)

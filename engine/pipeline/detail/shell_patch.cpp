@@ -73,10 +73,8 @@ double meanOfSquares(const NodeField& field)
 double lengthOf(const Patch& patch, const Material& material, double foundation)
 {
     const auto [most, least] = patch.principal;
-    const double perRoot     = std::pow(shellLengthRoot(material), -4); // [1/m^2] of a curvature of 1/m
-    const double ends =
-        (least / most > kOneWay ? perRoot * most * least : 0) + foundation / rigidityAtContact(patch); // [1/m^4]
-    return std::pow(ends > 0 ? ends : perRoot * most * most, -0.25);
+    const double length      = dentReach(most, least, material, foundation / rigidityAtContact(patch)).length;
+    return std::isfinite(length) ? length : shellLengthRoot(material) / std::sqrt(std::abs(most));
 }
 
 /// Returns the noise of the points [m], the root of its mean square: one that changes little as points come and go.
@@ -147,14 +145,14 @@ std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& 
 
 /// Returns whether the faces of one sheet bulge apart, or towards each other, so that its middle surface is less than half
 /// as curved as the one that is touched. Two fits say so, before those of a field are made.
-bool isLensAtContact(const Patch& patch, const SoftObject& object)
+/// \param bent  width of what bends [m]
+bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
 {
     // Radius of the fits: over what bends, half the length of a shell that fills it; [spacings]; what keeps the error that noise
     // makes, 9.5 noise spacing / radius^3, below 0.5 1/m [m]
     constexpr double kHalf = 0.5, kShare = 0.0625, kSpacings = 5, kNoisy = 19;
     const auto       behind = otherFaceBehind(patch, object);
     if (!behind) return false;
-    const double     bent   = bentSize(patch); // [m]
     const double     quiet  = std::cbrt(kNoisy * patch.noise * patch.spacing);
     const double     radius = std::max(kSpacings * patch.spacing, std::clamp(quiet, kShare * bent, bent / 2));
     const glm::dvec3 normal = patch.chart.frame.normal;
@@ -194,20 +192,28 @@ Shell shellOf(const Patch& patch)
             patch.sheared};
 }
 
+std::string whyFlat(const Patch& patch, const SoftObject& object, const PatchSettings& settings)
+{
+    if (settings.theory == Theory::plate) return {};
+    if (settings.neighbourhood == Neighbourhood::ball)
+        return "the points of a ball are no surface with a curvature; set neighbourhood surface";
+    if (patch.normalFelt) return "the points around determine no curvature, as at a rim";
+    if (isLensAtContact(patch, object, settings.windowOf == WindowOf::object ? settings.window / 2 : settings.window))
+        return "the object is one thin sheet whose two faces bulge to either side, so that its middle is flatter than "
+               "the "
+               "face that is touched; give the points of one face, laid on the middle, if it is curved";
+    return {};
+}
+
 void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings)
 {
     if (settings.large == Large::on || settings.theory == Theory::shell) fillMembrane(patch, object.material());
-    if (settings.theory == Theory::plate) return;
-    const auto stayFlat = [&](const char* why) { patch.flatBecause = why; };
-    if (settings.neighbourhood == Neighbourhood::ball)
-        return stayFlat("the points of a ball are no surface with a curvature; set neighbourhood surface");
-    if (patch.normalFelt) return stayFlat("the points around determine no curvature, as at a rim");
-    if (isLensAtContact(patch, object))
-        return stayFlat(
-            "the object is one thin sheet whose two faces bulge to either side, so that its middle is flatter "
-            "than the face that is touched; give the points of one face, laid on the middle, if it is curved");
+    if (settings.theory == Theory::plate || !patch.flatBecause.empty()) return;
     patch.curvature = findCurvature(patch, object, points, settings);
-    if (!patch.curvature) return stayFlat("the points in the patch window determine no curvature");
+    if (!patch.curvature) {
+        patch.flatBecause = "the points in the patch window determine no curvature";
+        return;
+    }
 
     const Material& material = object.material();
     const int       middle   = settings.cells / 2;

@@ -4,8 +4,12 @@
 
 namespace palp {
 
+/// Returns why a patch bends flat though the settings ask for a shell, as far as the contact alone shows it; else nothing.
+/// \pre the patch has its chart
+[[nodiscard]] std::string whyFlat(const Patch& patch, const SoftObject& object, const PatchSettings& settings);
+
 /// Makes a shell of the patch's plate, if the settings ask for one: finds how the touched surface is curved, and what its
-/// membrane resists. Where that cannot be, the patch stays a plate, and says why in `flatBecause`.
+/// membrane resists. Where that cannot be, or `flatBecause` says so already, the patch stays a plate, and says why there.
 /// \param object  that the patch's points are of
 /// \param points  of the touched surface, all that have a place in the chart
 void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings);
