@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <charconv>
 
 #include <nlohmann/json.hpp>
@@ -81,7 +82,10 @@ double WrittenValue::number() const
     const double perPlain                      = key.dimension == Dimension::length ? metresPerPlainNumber : 1;
     const double value                         = parseQuantity(plain, key.dimension, what, perPlain);
     const auto [least, most, open, multipleOf] = *key.bounds;
-    if (open ? !(value > least && value < most) : !(value >= least && value <= most)) refuse();
+    if (open ? !(value > least && value < most) : !(value >= least && value <= most))
+        refuse(perPlain == 1 || std::isalpha(static_cast<unsigned char>(text.back())) != 0
+                   ? ""
+                   : ", which the length unit makes " + plainNumber(value) + " m");
     return value;
 }
 

@@ -186,6 +186,33 @@ TEST(MultigridShellSolver, GivesEachOfSeveralLoadsTheAnswerThatItHasAlone)
     EXPECT_EQ(together[4].work, 0);
 }
 
+/// Of a smooth map the first step gains next to all that nested iteration has left, and tells so; at a jump, or of too few
+/// loads, it does not.
+TEST(MultigridShellSolver, SeveralLoadsOnAnEvenMapTakeOneStep)
+{
+    const auto stepsOf = [](const Map& map, int loads, double tolerance) {
+        const Shell            shell = shellOf(square(64), map, constant(1, 0.5, 0.2), 8);
+        ReferenceShellSolver   reference(shell);
+        std::vector<Footprint> footprints;
+        for (int n = 0; n < loads; ++n) footprints.emplace_back(fingertip(square(64), 1e-3 * (n - 4), 2e-3));
+        const auto answers = MultigridShellSolver(shell).solve(footprints, tolerance);
+        int        steps   = 0;
+        for (std::size_t n = 0; n < footprints.size(); ++n) {
+            const NodeField load = footprints[n].load(square(64));
+            EXPECT_NEAR(answers[n].work / dot(load, reference.solve(load).deflection), 1, tolerance * tolerance);
+            EXPECT_TRUE(answers[n].report.converged);
+            EXPECT_LT(*answers[n].report.errorEstimate, tolerance);
+            steps = std::max(steps, *answers[n].report.iterations);
+        }
+        return steps;
+    };
+    EXPECT_EQ(stepsOf(wart(10), 8, 1e-2), 1);
+    EXPECT_EQ(stepsOf(wart(10), 3, 1e-2), 1);
+    EXPECT_GT(stepsOf(wart(10), 2, 1e-2), 1) << "each by itself";
+    EXPECT_GT(stepsOf(wart(10), 8, 1e-3), 1);
+    EXPECT_GT(stepsOf(disc(10), 8, 1e-2), 1);
+}
+
 TEST(MultigridShellSolver, HasTheSameBitsOnEveryInstructionSet)
 {
     // The span of the finest level is known to the compiler, that of the next ones is not; odd numbers of cells too.

@@ -382,6 +382,12 @@ TEST(Scene, ACloudFileLiesBesideItsSceneAndIsScaledByItsUnit)
                      }),
                      {"--length-unit", "parsec"}));
     EXPECT_TRUE(says(refusalOf([&] {
+                         SceneOverrides flags    = overrides({{"window", "1e-6"}, {"length_unit", "mm"}});
+                         flags.flagsInLengthUnit = true;
+                         static_cast<void>(readScene(file, flags));
+                     }),
+                     {"--window", "from 1e-6 to 100 m", "found \"1e-6\", which the length unit makes 1e-9 m"}));
+    EXPECT_TRUE(says(refusalOf([&] {
                          static_cast<void>(readScene(file, overrides({{"points", "100"}})));
                      }),
                      {"--points", "sample"}));

@@ -172,7 +172,7 @@ void addInfoCommand(CLI::App& app)
 {
     CLI::App*  command = app.add_subcommand("info", "shows what a cloud holds, how it is read and how good it is");
     const auto options = std::make_shared<InfoOptions>();
-    options->source.addTo(*command, SceneKey::Group::object);
+    options->source.addTo(*command, SceneKey::Group::touch); // how it bends decides what the window holds
     command->get_option("SCENE")->required(false);
     const auto list = std::make_shared<bool>(false), keys = std::make_shared<bool>(false),
                schema = std::make_shared<bool>(false);
