@@ -577,6 +577,15 @@ void shellApply_together(const HostDispatch& d)
 {
     applyAll<true, double, double, float>(d, nullptr, 1);
 }
+// Buffers: entries, right side, answer; what is missing of the right side.
+void shellMissing(const HostDispatch& d)
+{
+    applyAll<false, double, double, double>(d, bound<const double>(d, 1), 2);
+}
+void shellMissing_together(const HostDispatch& d)
+{
+    applyAll<true, double, double, float>(d, bound<const float>(d, 1), 2);
+}
 void shellProlong(const HostDispatch& d)
 {
     prolongOf<false>(d);

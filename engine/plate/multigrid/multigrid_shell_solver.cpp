@@ -78,9 +78,8 @@ struct MultigridShellSolver::Impl {
     {
         const auto began = std::chrono::steady_clock::now();
         fields.setRight(loads);
-        // One load in doubles, and with it those of a processor, keeps its bits whatever other loads there are.
-        const bool mayJudge = std::is_same_v<Fields, HostShellFields<true>> && isEven;
-        const auto states   = ShellGradients<Fields>(fields).solve(wanted.tolerance, wanted.mostSteps, mayJudge);
+        // Loads in doubles, one on the host or those of a processor, keep their bits whatever other loads there are.
+        const auto states = ShellGradients<Fields>(fields).solve(wanted.tolerance, wanted.mostSteps, isEven);
         if constexpr (std::is_same_v<Fields, ProcessorShellFields>) fields.fetch();
         const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
         for (std::size_t n = 0; n < loads.size(); ++n)

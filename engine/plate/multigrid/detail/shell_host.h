@@ -136,13 +136,13 @@ public:
     /// \return as go()
     PerLoad takeStart()
     {
-        std::ranges::copy(cycle_.start(rounded(b_)), p_.begin());
-        apply();
-        std::ranges::fill(x_, Real(0));
-        r_ = b_;
-        PerLoad whole{};
-        whole.fill(1);
-        return go(whole);
+        std::ranges::copy(cycle_.start(rounded(b_)), x_.begin());
+        callHost(kernels_.shellMissing, ShellPush{.layout = finest_.layout},
+                 {finest_.exact.data(), b_.data(), x_.data(), r_.data()});
+        PerLoad       works = dots(kernels_.shellDots, b_, x_.data());
+        const PerLoad lacks = dots(kernels_.shellDots, r_, x_.data());
+        for (std::size_t n = 0; n < works.size(); ++n) works[n] += lacks[n];
+        return works;
     }
 
     /// z := what a cycle makes of what is left.
@@ -176,6 +176,13 @@ public:
         PerLoad works{};
         for (std::size_t n = 0; n < works.size(); ++n) works[n] = sums[0][n] + sums[1][n];
         return works;
+    }
+
+    /// x := x + lengths p, which ends it: r is left as it was.
+    void finish(const PerLoad& lengths) requires kTogether
+    {
+        callHost(kernels_.shellTurn, size(), {x_.data(), p_.data(), lengths.data()});
+        x_.swap(p_);
     }
 
     /// p := z
