@@ -135,6 +135,12 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
     }
 }
 
+double quietFitRadius(double noise, double spacing) noexcept
+{
+    constexpr double kError = 9.5, kMost = 0.5; // [1]; [1/m]
+    return std::cbrt(kError / kMost * noise * spacing);
+}
+
 std::pair<double, double> principalOf(const LocalCurvature& fit) noexcept
 {
     const glm::dmat3& t       = fit.tensor;

@@ -148,12 +148,11 @@ std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& 
 /// \param bent  width of what bends [m]
 bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
 {
-    // Radius of the fits: over what bends, half the length of a shell that fills it; [spacings]; what keeps the error that noise
-    // makes, 9.5 noise spacing / radius^3, below 0.5 1/m [m]
-    constexpr double kHalf = 0.5, kShare = 0.0625, kSpacings = 5, kNoisy = 19;
+    // Radius of the fits: over what bends, half the length of a shell that fills it [1]; [spacings]
+    constexpr double kHalf = 0.5, kShare = 0.0625, kSpacings = 5;
     const auto       behind = otherFaceBehind(patch, object);
     if (!behind) return false;
-    const double     quiet  = std::cbrt(kNoisy * patch.noise * patch.spacing);
+    const double     quiet  = quietFitRadius(patch.noise, patch.spacing);
     const double     radius = std::max(kSpacings * patch.spacing, std::clamp(quiet, kShare * bent, bent / 2));
     const glm::dvec3 normal = patch.chart.frame.normal;
     const auto       front  = faceCurvature(object, patch.chart.origin, normal, radius);

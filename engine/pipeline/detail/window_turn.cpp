@@ -22,9 +22,8 @@ struct Bend {
 /// are few or noisy.
 double radiusFor(const TouchedSurface& surface, const PatchSettings& settings)
 {
-    // Of the window; [spacings]; what keeps the error that noise makes, 9.5 noise spacing / radius^3, below 0.5 1/m [m]
-    constexpr double kDent = 0.125, kMost = 0.25, kSpacings = 5, kNoisy = 19;
-    const double     quiet = std::cbrt(kNoisy * surface.noise * surface.spacing);
+    constexpr double kDent = 0.125, kMost = 0.25, kSpacings = 5; // of the window [1]; [spacings]
+    const double     quiet = quietFitRadius(surface.noise, surface.spacing);
     return std::max(kSpacings * surface.spacing, std::clamp(quiet, kDent * settings.window, kMost * settings.window));
 }
 
