@@ -116,7 +116,8 @@ std::string sparseForCurvature(const SoftObject& object)
         double bias, spacing, larger;
     };
     std::vector<Found> found;
-    const std::size_t  places = std::min(kPlaces, object.size());
+    if (object.survey().spacings().empty()) return {}; // too few points for a surface
+    const std::size_t places = std::min(kPlaces, object.size());
     for (std::size_t k = 0; k < places; ++k) {
         const auto   point   = std::uint32_t((2 * k + 1) * object.size() / (2 * places));
         const double spacing = object.survey().spacing(point), radius = kSpacings * spacing;

@@ -773,22 +773,16 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
     return std::abs(*compliance + bodyFelt(patch) - patch.compliance) / 3 / patch.compliance;
 }
 
-std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& patch, const PatchSettings& settings,
+                                         PlateSolver& solver)
 {
     if (settings.theory != Theory::shell || !patch.deformed() || !patch.covered.values().empty()) return {};
-    const Footprint finger(unitLoad(patch, settings));
-    const auto      felt = [&](Edge edge) {
-        Shell shell         = shellOf(patch);
-        shell.bending.edges = {edge, edge, edge, edge};
-        shell.stressEdges   = stressEdgesFor(shell.bending.edges);
-        const auto of       = [&](const auto& what) {
-            return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance, PlateSolver::kAsWorks)
-                .responses.front()
-                .work;
-        };
-        const double body = edge == Edge::supported ? patch.bodyCompliance : 0;
-        const double c    = body + (patch.curvature ? of(shell) : of(shell.bending));
-        return feltStiffness(settings.forceLaw, patch.contactStiffness, c);
+    PatchSettings held = settledFor(object, settings);
+    held.large         = Large::off;
+    const auto felt    = [&](Edge edge) {
+        held.edges = {edge, edge, edge, edge};
+        if (held.edges == patch.plate.edges) return patch.feltStiffness;
+        return deform(object, patch.contact, held, solver, patch.chart.frame).feltStiffness;
     };
     return SupportRange{felt(Edge::supported), felt(Edge::clamped)};
 }

@@ -58,11 +58,12 @@ struct SupportRange {
     double clamped   = 0; ///< held as firmly as can be
 };
 
-/// Solves the patch's shell, or its plate where it is flat, with either support on all sides. Where a surface is curved one way, or both ways against
+/// Touches the same place with either support on all sides of the window, which stands as it does with that support. Where a surface is curved one way, or both ways against
 /// each other, a dent reaches as far as the object does, and its support decides within this range; where it bulges both
 /// ways and the window is some eight lengths wide, both are nearly alike.
 /// \return empty if the settings ask for no shell, or the window spans an object, which has supports of its own
-[[nodiscard]] std::optional<SupportRange> supportRange(const Patch& patch, const PatchSettings& settings,
-                                                       PlateSolver& solver);
+/// \param object, settings  that the patch was made with
+[[nodiscard]] std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& patch,
+                                                       const PatchSettings& settings, PlateSolver& solver);
 
 } // namespace palp

@@ -9,13 +9,16 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/core/parallel.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/curvature_sites.h"
 
 namespace palp {
 namespace {
 
-constexpr std::size_t kPlaces = 48;
+/// Radii of curvature to a window's width that sags by kMostSag; and the most that a window has [1]. What bulges both ways is
+/// felt as whole bodies are, to 10 %, in windows that wrap round: see tooDeep() of the warnings.
+constexpr double kShallowRadii = 8 * kMostSag, kMostRadii = 5;
 
 /// How the surface bends about a place.
 struct Bend {
@@ -29,36 +32,67 @@ struct Weighed {
     double value = 0, weight = 0;
 };
 
-/// Returns the value up to which a share of all the weight lies.
-double quantileOf(std::vector<Weighed> values, double share)
+/// Returns the value below and above which half of all the weight lies.
+double medianOf(std::vector<Weighed> values)
 {
     std::ranges::sort(values, {}, &Weighed::value);
     double left = 0;
-    for (const Weighed& each : values) left += share * each.weight;
+    for (const Weighed& each : values) left += each.weight / 2;
     for (const Weighed& each : values)
         if ((left -= each.weight) < 0) return each.value;
     return values.back().value;
 }
 
+/// Returns the geometric mean of some positive values and so many standard deviations more, but no more than the largest. It
+/// hangs less on single values than a quantile does, and less on which half is the larger than a median.
+double aboveMean(const std::vector<Weighed>& values, double deviations)
+{
+    double all = 0, sum = 0, squares = 0;
+    for (const auto& [value, weight] : values) {
+        all += weight;
+        sum += weight * std::log(value);
+    }
+    const double mean = sum / all;
+    for (const auto& [value, weight] : values) squares += weight * std::pow(std::log(value) - mean, 2);
+    return std::min(std::exp(mean + deviations * std::sqrt(squares / all)),
+                    std::ranges::max(values, {}, &Weighed::value).value);
+}
+
+/// Returns the radius of a fit about a point [m]: some spacings, a share of the object, and what makes it quiet.
+double radiusAbout(const SoftObject& object, std::uint32_t point)
+{
+    constexpr double     kSpacings = 6, kShare = 1.0 / 16, kMost = 1.0 / 6; // of the diagonal [1]
+    const SurfaceSurvey& survey   = object.survey();
+    const double         diagonal = object.cloud().bounds().diagonal();
+    const double         quiet    = quietFitRadius(survey.noise(point), survey.spacing(point));
+    return std::max({kSpacings * object.spacing(), kShare * diagonal, std::min(quiet, kMost * diagonal)});
+}
+
 /// Returns how a shell bends at places spread evenly over the object, where its points determine it; a plate does not.
 std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& settings)
 {
-    constexpr double  kSpacings = 6, kShare = 1.0 / 16; // radius of the fits: at least; of the diagonal [1]
-    const double      radius = std::max(kSpacings * object.spacing(), kShare * object.cloud().bounds().diagonal());
-    const std::size_t places = std::min(kPlaces, object.size());
-    std::vector<Bend> bends;
-    for (std::size_t k = 0; k < places; ++k) {
-        const auto   point = std::uint32_t((2 * k + 1) * object.size() / (2 * places));
-        const double area  = object.survey().spacing(point) * object.survey().spacing(point);
-        if (settings.theory != Theory::shell) {
-            bends.push_back({point, 0, 0, area});
-            continue;
+    if (object.survey().spacings().empty()) return {}; // too few points for a surface
+    constexpr std::size_t            kPlaces = 192;
+    const std::size_t                places  = std::min(kPlaces, object.size());
+    std::vector<std::optional<Bend>> found(places);
+    inParallel(places, 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const auto   point = std::uint32_t((2 * k + 1) * object.size() / (2 * places));
+            const double area  = object.survey().spacing(point) * object.survey().spacing(point);
+            if (settings.theory != Theory::shell) {
+                found[k] = Bend{point, 0, 0, area};
+                continue;
+            }
+            const auto fit = faceCurvature(object, object.positions()[point], object.survey().normal(point),
+                                           radiusAbout(object, point));
+            if (!fit) continue;
+            const auto [most, least] = principalOf(*fit);
+            found[k]                 = Bend{point, most, least, area};
         }
-        const auto found = faceCurvature(object, object.positions()[point], object.survey().normal(point), radius);
-        if (!found) continue;
-        const auto [most, least] = principalOf(*found);
-        bends.push_back({point, most, least, area});
-    }
+    });
+    std::vector<Bend> bends;
+    for (const auto& bend : found)
+        if (bend && bend->area > 0) bends.push_back(*bend);
     return bends;
 }
 
@@ -99,17 +133,16 @@ double foundationWindowOf(const SoftObject& object)
     return foundationWindow(least, most);
 }
 
-/// What the dents of an object ask for, and of how much of it: the others reach as far as the object.
-struct Ending {
-    DentLengths lengths;   ///< where dents end
-    double      share = 0; ///< of the surface [1]
+/// What the dents of an object ask for, and on how much of it they end by themselves.
+struct Asked {
+    DentLengths lengths;   ///< where they end; its window is that of the whole object
+    double      share = 0; ///< of the surface where they end [1]
 };
 
-Ending endingOf(const SoftObject& object, const PatchSettings& settings, const std::vector<Bend>& bends)
+Asked askedBy(const SoftObject& object, const PatchSettings& settings, const std::vector<Bend>& bends)
 {
-    // Curvature that adds less to a foundation is none; widths up to twice the median, because the poles of flat spheroids need
-    // 1.45 and the median of 48 places is right to a tenth [1].
-    constexpr double     kFlat = 1e-6, kTypical = 0.5, kFlatter = 2, kSpare = 1.05; // of the mean rigidity's width [1]
+    // Curvature that adds less to a foundation is none; room beyond the width of the mean rigidity [1].
+    constexpr double     kFlat = 1e-6, kSpare = 1.05;
     const Material&      material     = object.material();
     const double         perRoot      = std::pow(shellLengthRoot(material), -4); // [1/m^2] of a curvature of 1/m
     const double         onFoundation = settings.foundation > 0 ? kSpare * foundationWindowOf(object) : 0;
@@ -119,33 +152,29 @@ Ending endingOf(const SoftObject& object, const PatchSettings& settings, const s
     for (const Bend& bend : bends) {
         const double below        = settings.foundation / object.rigidity(bend.point); // [1/m^4]
         const auto [length, wide] = dentReach(bend.most, bend.least, material, below);
-        const bool isFlat         = perRoot * bend.most * bend.most < kFlat * below;
         all += bend.area;
-        if (!(length < object.cloud().bounds().diagonal())) continue;
+        if (!(length < object.cloud().bounds().diagonal())) { // supports decide: as the theory and the settings allow
+            widths.push_back({std::min(settings.window, kShallowRadii / std::abs(bend.most)), bend.area});
+            continue;
+        }
         ended += bend.area;
         lengths.push_back({length, bend.area});
         // What is flat feels the mean of the rigidity in its window, as the warnings count it.
+        const bool isFlat = perRoot * bend.most * bend.most < kFlat * below;
         widths.push_back({isFlat ? onFoundation * meanLength(object, sample, bend.point, onFoundation * length / 2,
                                                              settings.foundation)
                                  : wide * length,
                           bend.area});
     }
-    if (lengths.empty()) return {};
+    if (widths.empty()) return {.lengths = {.window = settings.window}};
+    // Where dents end nearly all places have the room that they ask for, where none does hardly one is too steep.
+    constexpr double kWide = 1.5, kNarrow = -1; // [standard deviations]
+    const double     share = ended / all;
+    Asked            asked{.lengths = {.window = aboveMean(widths, std::lerp(kNarrow, kWide, share))}, .share = share};
+    if (lengths.empty()) return asked;
     const auto [least, most] = std::ranges::minmax(lengths, {}, &Weighed::value);
-    const double widest      = std::ranges::max(widths, {}, &Weighed::value).value;
-    return {{least.value, quantileOf(lengths, kTypical), most.value,
-             std::min(widest, kFlatter * quantileOf(widths, kTypical))},
-            ended / all};
-}
-
-/// Returns the width of a window that sags no more than it may at nearly all places [m].
-double shallowWindow(const std::vector<Bend>& bends)
-{
-    constexpr double kNearly = 0.95; // rims and tips bend as sharply as the fits can tell [1]
-    if (bends.empty()) return std::numeric_limits<double>::infinity();
-    std::vector<Weighed> largest; // [1/m]
-    for (const Bend& bend : bends) largest.push_back({std::abs(bend.most), bend.area});
-    return 8 * kMostSag / quantileOf(std::move(largest), kNearly);
+    asked.lengths            = {least.value, medianOf(lengths), most.value, asked.lengths.window};
+    return asked;
 }
 
 /// Returns the width of a square as large as the disc about a place of which the object's surface fills four fifths [m].
@@ -196,14 +225,18 @@ struct Choice {
     std::string why;
 };
 
-/// Chooses a width where dents end by themselves.
-Choice chosenBy(const DentLengths& lengths, const SoftObject& object, const PatchSettings& settings, double least)
+/// Chooses a width where dents end by themselves, on some of the object at least.
+Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& settings, double least)
 {
-    constexpr double  kCells = 1.25; // that a fingertip's radius spans at least: what is felt is then right to 2 % [1]
-    const std::string reach  = "dents of this object, which die away over " + formatQuantity(lengths.typical, "m");
-    const std::string asked  = reach + ", ask for " + formatQuantity(lengths.window, "m");
-    const double      filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kCells;
-    const double      width = std::min({lengths.window, filled, carried});
+    constexpr double   kAllOver = 0.9; // of the surface [1]
+    const DentLengths& lengths  = by.lengths;
+    std::string        reach    = "dents of this object, which die away over " + formatQuantity(lengths.typical, "m");
+    if (by.share < kAllOver)
+        reach += " on " + std::to_string(std::lround(100 * by.share)) +
+                 " % of it and reach far on the rest, see the support range";
+    const std::string asked = reach + ", ask for " + formatQuantity(lengths.window, "m");
+    const double filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kFewestCells;
+    const double width = std::min({lengths.window, filled, carried});
     if (width < least) return {least, "four radii of the fingertip, because " + reach + ", ask for less"};
     if (width == carried)
         return {width, "as wide as " + std::to_string(settings.cells) + " cells carry this fingertip, where " + asked +
@@ -212,42 +245,23 @@ Choice chosenBy(const DentLengths& lengths, const SoftObject& object, const Patc
     return {width, "as wide as " + reach + ", ask for at nearly all places"};
 }
 
-/// Chooses a width of a shell where supports decide.
-Choice unendedChoice(const PatchSettings& settings, const std::vector<Bend>& bends, double least)
-{
-    const std::string why = "because nothing ends the dents of what is curved one way, against each other or hardly at "
-                            "all; see the support "
-                            "range";
-    const double      shallow = std::max(shallowWindow(bends), least);
-    if (shallow < settings.window) return {shallow, "as deep as the theory of shallow shells allows, " + why};
-    return {settings.window, "the width without auto, " + why};
-}
-
 Choice chosen(const SoftObject& object, const PatchSettings& settings)
 {
-    constexpr double kMixed =
-        0.65; // of the surface, from which on dents end, and of the rest from which on none do [1]
-    const auto   bends = bendsOf(object, settings);
-    const double least = 4 * settings.footprintRadius;
-    // A dent that dies away hardly feels what is steep, see patch_warnings.cpp, and would feel edges that are nearer.
-    const auto [lengths, share] = endingOf(object, settings, bends);
-    if (share >= kMixed) return chosenBy(lengths, object, settings, least);
+    constexpr double kSome = 0.02; // of the surface, where the fits of a tube may see two ways to bend [1]
+    const double     least = 4 * settings.footprintRadius;
+    const Asked      asked = askedBy(object, settings, bendsOf(object, settings));
+    if (asked.share > kSome) return chosenBy(asked, object, settings, least);
     if (settings.theory == Theory::plate)
         return {settings.window,
                 "the width without auto, because nothing ends the dents of a plate " +
                     std::string(settings.foundation > 0 ? "on so soft a foundation" : "without a foundation") +
                     ": this width decides what is felt; set a --window, a --foundation or, where the "
                     "surface is curved, --theory shell"};
-    const Choice unended = unendedChoice(settings, bends, least);
-    if (share <= 1 - kMixed) return unended;
-    // Which half is the larger hangs on a few places, and what is felt should not: in between it goes over from one width to
-    // the other.
-    const Choice ended = chosenBy(lengths, object, settings, least);
-    const double part  = (share - (1 - kMixed)) / (2 * kMixed - 1);
-    return {std::exp(std::lerp(std::log(unended.width), std::log(ended.width), part)),
-            "between " + formatQuantity(unended.width, "m") + " and " + formatQuantity(ended.width, "m") +
-                ", because dents die away by themselves on " + std::to_string(std::lround(100 * share)) +
-                " % of this object and reach far on the rest of it; see the support range"};
+    const std::string why = "because nothing ends the dents of what is curved one way, against each other or hardly at "
+                            "all; see the support range";
+    const double      width = std::max(asked.lengths.window, least);
+    if (width < settings.window) return {width, "which sags by a fourth of it at most places, " + why};
+    return {settings.window, "the width without auto, " + why};
 }
 
 } // namespace
@@ -261,21 +275,28 @@ double shellLengthRoot(const Material& material) noexcept
 DentReach dentReach(double most, double least, const Material& material, double below) noexcept
 {
     constexpr double kAlike = 2, kFarther = 0.7; // ratio of the curvatures; power, see DentReach [1]
+    constexpr double kRound = 4 * kOneWay;       // ratio from which on a window may wrap round [1]
     // What is curved one way ends nothing, whichever side of it the fits' noise says that it bends to the other way.
-    const bool   bulges  = least * most > kOneWay * most * most;
-    const double perRoot = bulges ? std::pow(shellLengthRoot(material), -4) : 0; // [1/m^2] of a curvature of 1/m
-    const double ends    = perRoot * most * least + below;                       // [1/m^4]
+    const double ratio = most == 0 ? 0 : least / most;
+    const double perRoot =
+        ratio > kOneWay ? std::pow(shellLengthRoot(material), -4) : 0; // [1/m^2] of a curvature of 1/m
+    const double ends = perRoot * most * least + below;                // [1/m^4]
     if (!(ends > 0)) return {std::numeric_limits<double>::infinity()};
+    const double length = std::pow(ends, -0.25);
     const double unlike = ends / (perRoot * least * least + below); // of the softest wave
-    return {std::pow(ends, -0.25), kLocalWindow * std::max(1.0, std::pow(unlike / kAlike, kFarther))};
+    const double window = kLocalWindow * std::max(1.0, std::pow(unlike / kAlike, kFarther));
+    if (below > 0) return {length, window};
+    const double part  = std::clamp((ratio - kOneWay) / (kRound - kOneWay), 0.0, 1.0);
+    const double radii = std::lerp(kShallowRadii, kMostRadii, part);
+    return {length, std::min(window, radii / (std::abs(most) * length))};
 }
 
 std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings)
 {
-    constexpr double kMost  = 0.5; // of the surface [1]
-    const Ending     ending = endingOf(object, settings, bendsOf(object, settings));
-    if (ending.share < kMost) return {};
-    return ending.lengths;
+    constexpr double kMost = 0.5; // of the surface [1]
+    const Asked      asked = askedBy(object, settings, bendsOf(object, settings));
+    if (asked.share < kMost) return {};
+    return asked.lengths;
 }
 
 double dentWindow(const SoftObject& object, const PatchSettings& settings)

@@ -11,11 +11,14 @@ namespace palp {
 /// is curved unequally both ways see DentReach.
 inline constexpr double kLocalWindow = 8;
 
+/// Cells of a grid that the fingertip's radius spans at least [1]: what is felt is then right to 2 %.
+inline constexpr double kFewestCells = 1.25;
+
 /// Sag of a surface over the width of its patch window up to which the theory of shallow shells holds [1].
 inline constexpr double kMostSag = 0.25;
 
 /// The lesser principal curvature over the larger up to which a surface counts as curved one way: dents then reach far [1].
-inline constexpr double kOneWay = 0.1;
+inline constexpr double kOneWay = 0.02;
 
 /// Returns the width beyond which the edges of a plate's window on a foundation are not felt, in lengths l = (D/k)^(1/4) [1].
 ///
@@ -37,6 +40,8 @@ struct DentReach {
     /// Width of a patch window that it hardly feels the edges of, in these lengths [1]: kLocalWindow, and more where one
     /// curvature is more than twice the other. Constant curvatures in ratios of 2, 3, 5, 8 and 16 are felt within 4 % of their
     /// limit of wide windows from 8, 11, 16, 22 and 33 lengths on, the window's corners along the principal directions.
+    /// Without a foundation it is no wider than five of the smallest radii of curvature, and than two where the other one is
+    /// next to nothing.
     double window = kLocalWindow;
 };
 
@@ -48,7 +53,7 @@ struct DentReach {
 /// Lengths over which dents die away by themselves on an object, at places spread evenly over it.
 struct DentLengths {
     double least = 0, typical = 0, most = 0; ///< the median and the extremes [m]
-    double window = 0; ///< width of a patch window whose edges are felt nowhere but on spots flatter than most [m]
+    double window = 0; ///< width of a patch window, one for all of the object, see dentWindow() [m]
 };
 
 /// Finds how far dents reach where the sheet's own stiffness, or what lies below it, ends them:
@@ -61,9 +66,11 @@ struct DentLengths {
 /// \source the shallow shell's l of Reissner 1946, with a foundation added to the membrane's
 [[nodiscard]] std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings);
 
-/// Returns how wide the patch window of WindowOf::dent is [m]: as most places of the object ask for, but no wider than the
-/// object fills in its middle, and at least four radii of the fingertip. Where nothing ends a dent it is as the settings say,
-/// but of shells no wider than kMostSag allows at all but a twentieth of the surface.
+/// Returns how wide the patch window of WindowOf::dent is [m]: as nearly all places of the object ask for where dents end by
+/// themselves, but no wider than the object fills in its middle and its cells carry the fingertip, and at least four radii of
+/// it. Where nothing ends a dent it is as the settings say, but of shells no wider than kMostSag allows at most places. What
+/// places ask for is averaged by their area, so that it goes over gradually from the one to the other, and hangs neither on
+/// how the object is turned nor on which of its points are looked at.
 /// \note as dentLengths()
 [[nodiscard]] double dentWindow(const SoftObject& object, const PatchSettings& settings);
 

@@ -53,21 +53,27 @@ std::string withOneDecimal(double value)
 /// in the middle of a side with half axes of 60, 45 and 35 mm, 80 and 30, 60 and 20 mm and 1 and 2 mm thick, are felt 2 to 8 %
 /// too stiff in windows as wide as their dents ask for, which sag up to all of their width, and one of h/R 0.1 10 % too soft;
 /// in windows of a sag of 25 % by up to 37 %. Spheres and tips are felt within 3 % of what narrower windows give.
-/// What is curved one way lets a dent run on: a tube is felt softer by 14 and 56 % in a window that sags 30 and 50 %, less
-/// than in proportion to the excess.
+/// What is curved one way lets a dent run on: a tube is felt softer by 14 and 56 % in a window that sags 30 and 50 %.
 /// \param sag     over the width of the window [1]
 /// \param bulges  both ways
-std::string tooDeep(double sag, bool bulges, double window)
+std::string tooDeep(double sag, bool bulges)
 {
-    const std::string text = "the surface is too deep for the theory of shallow shells: it sags " +
-                             withOneDecimal(100 * sag) + " % of the patch window's width, expected at most 25; ";
-    if (bulges)
-        return text +
-               "where it bulges both ways a dent hardly feels that: whole bodies that another program computed were "
-               "felt within some 10 %";
-    return text + "compared with a --window of " + formatQuantity(window * kMostSag / sag, "m") +
-           ", which is within the theory, it may be felt too soft by up to " +
-           std::to_string(std::lround(std::ceil(100 * (sag / kMostSag - 1)))) + " %";
+    return "the surface is too deep for the theory of shallow shells: it sags " + withOneDecimal(100 * sag) +
+           " % of the patch window's width, expected at most 25; " +
+           (bulges
+                ? "where it bulges both ways a dent hardly feels that: whole bodies that another program computed were "
+                  "felt within some 10 %"
+                : "a wider window is felt softer, a narrower one stiffer, and the object's supports decide: see the "
+                  "support range");
+}
+
+/// Says which window a dent asks for [m].
+std::string widerWindow(double width, const PatchSettings& settings)
+{
+    constexpr int kTogether = 16;
+    const int     cells     = int(std::ceil(kFewestCells * width / settings.footprintRadius / kTogether)) * kTogether;
+    return "a --window of " + formatQuantity(width, "m") +
+           (cells > settings.cells ? " with --cells " + std::to_string(cells) : "");
 }
 
 /// Returns the stiffness of the membrane that a plate leaves out, over what else resists the slowest wave in the window: as
@@ -103,11 +109,13 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
     const double asked =
         dentReach(most, least, material, settings.foundation / rigidityAtContact(patch)).window; // [lengths]
     if (!whole && lengths < kNearly * asked && ends)
-        result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
-                         formatQuantity(patch.shellLength, "m") +
-                         " each), so that its edges are felt; try a --window of " +
-                         formatQuantity(asked * patch.shellLength, "m") +
-                         ", or object, with what holds it, where the object is smaller");
+        result.push_back(
+            "the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
+            formatQuantity(patch.shellLength, "m") + " each), so that its edges are felt; " +
+            (settings.windowOf == WindowOf::dent ? "auto has one width for all of the object, and here " : "try ") +
+            widerWindow(asked * patch.shellLength, settings) +
+            (settings.windowOf == WindowOf::dent ? " would do" : "") +
+            ", or object, with what holds it, where the object is smaller than that");
     else if (!whole && !ends)
         result.push_back(
             "the surface is " +
@@ -116,7 +124,7 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                                                   : "curved one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most > kOneWay, window));
+    if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most > kOneWay));
     if (patch.unrolled > kFolded)
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }

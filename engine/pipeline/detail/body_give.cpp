@@ -67,11 +67,12 @@ double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchS
     if (!patch.curvature || !patch.covered.values().empty()) return 0;
     // What is far away decides, not a bump at the contact: a hand that slides on meets no step.
     const auto [gaussian, largest] = meanCurvature(*patch.curvature);
-    if (!(gaussian > kOneWay * largest)) return 0;
+    constexpr double kBothWays     = 0.1; // of the square of the larger curvature: less is hardly a dome [1]
+    if (!(gaussian > kBothWays * largest)) return 0;
     const double nu = object.material().poissonRatio, radius = 1 / std::sqrt(gaussian);
     // Neither what bulges hardly more than one way, nor what is flat beside the body's size, is part of a dome.
     const double size   = object.cloud().bounds().diagonal() / 2;
-    const double bulges = std::min(1.0, gaussian / largest / kOneWay - 1) * std::clamp(2 - radius / size, 0.0, 1.0);
+    const double bulges = std::min(1.0, gaussian / largest / kBothWays - 1) * std::clamp(2 - radius / size, 0.0, 1.0);
     const double length = shellLengthRoot(object.material()) * std::sqrt(radius); // [m]
     const double rho    = std::pow(std::pow(0.95 * length, 4) + std::pow(0.43 * settings.footprintRadius, 4), 0.25);
     const double rim    = rimOf(object, patch.chart.frame.normal);

@@ -150,6 +150,7 @@ bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
 {
     // Radius of the fits: over what bends, half the length of a shell that fills it [1]; [spacings]
     constexpr double kHalf = 0.5, kShare = 0.0625, kSpacings = 5;
+    constexpr double kThick = 0.5; // over the radius of curvature: that is no sheet, whatever lies behind [1]
     const auto       behind = otherFaceBehind(patch, object);
     if (!behind) return false;
     const double     quiet  = quietFitRadius(patch.noise, patch.spacing);
@@ -157,7 +158,7 @@ bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
     const glm::dvec3 normal = patch.chart.frame.normal;
     const auto       front  = faceCurvature(object, patch.chart.origin, normal, radius);
     const auto       back   = faceCurvature(object, *behind, -normal, radius);
-    if (!front || !back) return false;
+    if (!front || !back || std::abs(principalOf(*front).first) * object.material().thickness > kThick) return false;
     double own = 0, both = 0;
     for (int i = 0; i < 3; ++i) { // towards its own outside the back of a sheet bends the other way
         own += glm::dot(front->tensor[i], front->tensor[i]);

@@ -57,13 +57,15 @@ std::optional<Bend> bendAbout(const Chart& chart, const SoftObject& object, cons
     return Bend{sum.x / all, sum.z / all, sum.xz / all};
 }
 
-/// Returns whether the window is cut from a larger body. Other sides are those of an object, as somebody laid them.
-bool isCutOut(const PatchSettings& settings)
+/// Returns the angle from a principal direction to a side of the window [rad]; empty if it is not to be turned.
+std::optional<double> sideFor(const PatchSettings& settings)
 {
     const PlateEdges& edges = settings.edges;
-    for (const Edge edge : {edges.x0, edges.x1, edges.z0, edges.z1})
-        if (edge != Edge::supported) return false;
-    return settings.theory == Theory::shell && settings.windowOf == WindowOf::contact;
+    const bool        alike = edges.x1 == edges.x0 && edges.z0 == edges.x0 && edges.z1 == edges.x0;
+    if (settings.theory != Theory::shell || !alike) return {};
+    if (edges.x0 == Edge::supported) return std::numbers::pi / 4; // cut from a larger body
+    if (edges.x0 == Edge::clamped) return 0;                      // held across its length, as a tube at its ends
+    return {};
 }
 
 } // namespace
@@ -73,13 +75,14 @@ Frame turnedToBend(const Chart& chart, const SoftObject& object, const TouchedSu
 {
     // Below it the turn of the window changes what is felt by less than 0.3 %, and the directions are those of the noise [1].
     constexpr double kAlike = 0.1;
-    if (!isCutOut(settings)) return chart.frame;
+    const auto       side   = sideFor(settings);
+    if (!side) return chart.frame;
     const auto bend = bendAbout(chart, object, surface, radiusFor(surface, settings));
     if (!bend) return chart.frame;
     const double mean = (bend->x + bend->z) / 2, apart = std::hypot((bend->x - bend->z) / 2, bend->xz);
     if (!(apart > kAlike * (std::abs(mean) + apart))) return chart.frame;
     const double principal = std::atan2(2 * bend->xz, bend->x - bend->z) / 2; // [rad] from east
-    return chart.frame.turned(std::remainder(principal - std::numbers::pi / 4, std::numbers::pi / 2));
+    return chart.frame.turned(std::remainder(principal - *side, std::numbers::pi / 2));
 }
 
 } // namespace palp

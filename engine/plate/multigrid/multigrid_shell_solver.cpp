@@ -10,20 +10,11 @@
 #include "engine/compute/context.h"
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
-#include "engine/plate/detail/hard_plates.h"
 #include "engine/plate/multigrid/detail/shell_gradients.h"
 #include "engine/plate/multigrid/detail/shell_host.h"
 #include "engine/plate/multigrid/detail/shell_processor.h"
 
 namespace palp {
-namespace {
-
-/// Ratio of rigidities of two nodes beside each other up to which loads may be judged by their first step, which was studied
-/// there [1].
-constexpr double kEven = 1.5;
-
-} // namespace
-
 struct MultigridShellSolver::Impl {
     /// Conjugate gradients by vectors of one kind.
     template <class Fields>
@@ -31,7 +22,6 @@ struct MultigridShellSolver::Impl {
 
     PlateGrid                  grid{};
     double                     stiffness = 0, phiUnit = 0; ///< [N/m]; phi over its unknown [N]
-    bool                       isEven  = false;            ///< no rigidity differs much from that of the node beside it
     const HostVariant&         host    = hostVariant();
     compute::Context*          context = nullptr; ///< of a processor of Vulkan; null: the host solves
     const ShellKernels*        kernels = nullptr;
@@ -48,7 +38,6 @@ struct MultigridShellSolver::Impl {
         const double rigidity = geometricMean(shell.bending.rigidity.values());
         const bool   sameGrid = shell.bending.grid == grid;
         grid                  = shell.bending.grid;
-        isEven                = largestJump(shell.bending) < kEven;
         stiffness             = rigidity / (grid.spacingX * grid.spacingZ);
         phiUnit               = std::sqrt(rigidity / geometricMean(shell.membraneCompliance.values()));
         makeLevels(shell, *host.kernels, levels);
@@ -79,7 +68,7 @@ struct MultigridShellSolver::Impl {
         const auto began = std::chrono::steady_clock::now();
         fields.setRight(loads);
         // Loads in doubles, one on the host or those of a processor, keep their bits whatever other loads there are.
-        const auto states = ShellGradients<Fields>(fields).solve(wanted.tolerance, wanted.mostSteps, isEven);
+        const auto states = ShellGradients<Fields>(fields).solve(wanted.tolerance, wanted.mostSteps);
         if constexpr (std::is_same_v<Fields, ProcessorShellFields>) fields.fetch();
         const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
         for (std::size_t n = 0; n < loads.size(); ++n)

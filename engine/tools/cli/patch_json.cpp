@@ -91,9 +91,9 @@ Json windowJson(const Patch& patch)
 }
 
 /// What a touch with a shell says of it, flat ones included; null without one.
-Json shellJson(const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
+Json shellJson(const SoftObject& object, const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
-    const auto range = supportRange(patch, settings, solver);
+    const auto range = supportRange(object, patch, settings, solver);
     if (!patch.curvature && !range) return nullptr;
     const bool isEnded = patch.curvature && std::isfinite(patch.shellLength);
     return {{"curvatures", {patch.principal.first, patch.principal.second}},
@@ -152,10 +152,11 @@ Json settingsJson(const Material& material, const PatchSettings& s)
              {{"x0", name(s.edges.x0)}, {"x1", name(s.edges.x1)}, {"z0", name(s.edges.z0)}, {"z1", name(s.edges.z1)}}}};
 }
 
-Json patchJson(const Patch& patch, const Material& material, const PatchSettings& settings, double force,
+Json patchJson(const SoftObject& object, const Patch& patch, const PatchSettings& settings, double force,
                PlateSolver& solver)
 {
-    Json report{
+    const Material& material = object.material();
+    Json            report{
         {"contact", {{"point", vectorJson(patch.contact.point)}, {"outward", vectorJson(patch.contact.outward)}}},
         {"force", force},
         {"settings", settingsJson(material, settings)},
@@ -168,7 +169,7 @@ Json patchJson(const Patch& patch, const Material& material, const PatchSettings
     report["chart"]["unrolled"]     = patch.unrolled;
     report["noise"]                 = patch.noise;
     report["window"]                = windowJson(patch);
-    report["shell"]                 = shellJson(patch, settings, solver);
+    report["shell"]                 = shellJson(object, patch, settings, solver);
     report["large"]                 = largeJson(patch, settings, force);
     report["rigidity_at_contact"]   = rigidityAtContact(patch);
     report["compliance"]            = patch.compliance;

@@ -9,8 +9,9 @@
 namespace palp {
 
 /// Returns every number of a touch, in SI units, for --json and touch.json.
-/// \param force  presses [N]; the patch itself holds responses to 1 N
-[[nodiscard]] nlohmann::json patchJson(const Patch& patch, const Material& material, const PatchSettings& settings,
+/// \param object  of which the patch is, with these settings
+/// \param force   presses [N]; the patch itself holds responses to 1 N
+[[nodiscard]] nlohmann::json patchJson(const SoftObject& object, const Patch& patch, const PatchSettings& settings,
                                        double force, PlateSolver& solver);
 
 /// Returns the scene constants of a touch.

@@ -252,7 +252,7 @@ void touch(const TouchOptions& options)
     tellTakeover(solver.takeoverSince(told, patch.report.solver), patch, settings.tolerance);
     demandDeformed(patch);
 
-    nlohmann::json report = patchJson(patch, scene.material, settings, force, solver);
+    nlohmann::json report = patchJson(object, patch, settings, force, solver);
     refuseOverflow(report);
     report["window"]["chosen"] = why.empty() ? nlohmann::json(nullptr) : nlohmann::json(why);
     report["cloud"]            = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
