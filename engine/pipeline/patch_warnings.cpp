@@ -91,7 +91,8 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                   const Material& material)
 {
     constexpr double kFolded = 0.5, kNearly = 0.95, kFelt = 0.2, kHardly = 0.02; // [1]
-    constexpr double kShown = 0.005; // half of what is printed of a sag is no excess [1]
+    constexpr double kShown    = 0.005; // half of what is printed of a sag is no excess [1]
+    constexpr double kComputed = 0.1;   // ratio of the curvatures down to which bodies were compared, see tooDeep() [1]
     if (settings.theory == Theory::plate && settings.neighbourhood == Neighbourhood::surface &&
         membraneLeftOut(patch, settings, material) > kFelt)
         result.push_back(
@@ -124,7 +125,7 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                                                   : "curved one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most > kOneWay));
+    if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most > kComputed));
     if (patch.unrolled > kFolded)
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }

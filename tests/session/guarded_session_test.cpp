@@ -66,12 +66,25 @@ TEST_P(StoppedSession, IsAtZeroAndEngagesAnewOnceTheHandWasLifted)
         falcon.serve(steadyTime() + 2, [&] { return falcon.pushes() && steadyTime() - falcon.pushesSince() > 0.1; });
         return falcon.pushes();
     };
+    const auto reset = [&] { // a servo that stood still is a fault, which the operator resets
+        falcon.press(1);
+        falcon.serve(steadyTime() + 0.1);
+        falcon.press(0);
+    };
+    int        unasked     = 0;
+    const auto pressAtLast = [&] { // a machine that is busy with other things may make the servo stand still
+        for (; !press(); ++unasked) {
+            if (unasked == 2) return false;
+            reset();
+        }
+        return true;
+    };
     falcon.serve(steadyTime() + 10, [&] { return falcon.packets() > 100; });
     std::mt19937                           random{1};
     std::uniform_real_distribution<double> wait{0, 0.1}; // [s]
     double                                 slowest = 0;  // [s]
     for (int n = 0; n < instants(); ++n) {
-        ASSERT_TRUE(press());
+        ASSERT_TRUE(pressAtLast());
         falcon.serve(steadyTime() + wait(random));
         const double asked = steadyTime();
         kill(child, GetParam());
@@ -91,15 +104,13 @@ TEST_P(StoppedSession, IsAtZeroAndEngagesAnewOnceTheHandWasLifted)
         kill(child, SIGCONT);
         falcon.serve(steadyTime() + 1, [&] { return falcon.pushes(); });
         ASSERT_FALSE(falcon.pushes()) << "the hand still presses: it must be lifted first";
-        if (GetParam() == SIGSTOP) { // a servo that stood still is a fault, which the operator resets
+        if (GetParam() == SIGSTOP) {
             ASSERT_FALSE(press());
-            falcon.press(1);
-            falcon.serve(steadyTime() + 0.1);
-            falcon.press(0);
+            reset();
         }
     }
     std::printf("  zero after %.1f ms at most, %d instants\n", slowest * 1e3, instants());
-    EXPECT_TRUE(press()) << "it goes on";
+    EXPECT_TRUE(pressAtLast()) << "it goes on";
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
 }

@@ -62,7 +62,7 @@ Options parsed(int count, char** words)
     std::map<std::string, std::string> given;
     for (int n = 1; n < count; n += 2) {
         if (n + 1 == count || std::string(words[n]).rfind("--", 0) != 0)
-            throw Error(std::string("unknown word ") + words[n] + "\n" + kUsage);
+            throw Error(std::string("unknown word ") + words[n] + "; see --help");
         given[words[n]] = words[n + 1];
     }
     for (const auto& [flag, text] : given) {
@@ -82,7 +82,7 @@ Options parsed(int count, char** words)
             options.first = std::stoull(text);
             options.step  = std::stoull(text.substr(1 + text.find('/')));
         } else
-            throw Error("unknown option " + flag + "\n" + kUsage);
+            throw Error("unknown option " + flag + "; see --help");
     }
     if (options.scenes.empty()) options.scenes = shippedScenesFolder();
     return options;
@@ -157,6 +157,10 @@ int run(const Options& options)
 int main(int count, char** words)
 {
     try {
+        if (count == 2 && std::string(words[1]) == "--help") {
+            std::cout << palp::soak::kUsage;
+            return 0;
+        }
         return palp::soak::run(palp::soak::parsed(count, words));
     } catch (const std::exception& error) {
         std::cerr << error.what() << '\n';
