@@ -20,7 +20,6 @@ constexpr int kLattice = 17; ///< places along a side of the window: 2.5 mm apar
 constexpr int kSurvey  = 9;  ///< the same for those from which the radius follows
 
 constexpr double kLeastSpacings = 5;     ///< radius of a fit, at least [spacings]: some 80 points
-constexpr double kNoiseError    = 9.5;   ///< error of the tensor over noise spacing / radius^3, measured [1]
 constexpr double kSurveyError   = 1.2;   ///< that of the survey [1/m]: a twentieth of what a fingertip's surface has
 constexpr double kSurveyShare   = 0.1;   ///< radius of the survey's fits, at least, over the window [1]: some 200 fits
 constexpr double kWantedError   = 0.025; ///< that of the fits over the typical curvature [1]
@@ -264,7 +263,7 @@ std::optional<double> radiusFor(const PatchWindow& window, const Frame& frame, c
 {
     const double  least  = kLeastSpacings * settings.spacing;
     const double  most   = std::max(least, settings.mostRadius);
-    const double  cube   = kNoiseError * settings.noise * settings.spacing;
+    const double  cube   = kFitNoiseError * settings.noise * settings.spacing;
     const double  coarse = std::max(least, kSurveyShare * std::max(window.grid.sizeX(), window.grid.sizeZ()));
     const double  radius = std::clamp(std::cbrt(cube / kSurveyError), coarse, std::max(coarse, most));
     const int     rung   = int(std::lround(rungOf(radius)));

@@ -19,11 +19,14 @@ struct SurfaceSheet {
     std::span<const glm::dvec3> normals; ///< [1] unit, roughly, towards the finger; one for each place
 };
 
+/// Error of a fit's tensor over noise spacing / radius^3, measured [1].
+inline constexpr double kFitNoiseError = 9.5;
+
 /// Fits a quadric to the points of a sheet about a place.
 ///
 /// Points count (1 - r^2 / radius^2)^2, r their distance along the surface, and less the farther they lie from the
 /// quadric (Tukey's weights), so that stray points do not matter. The frame is turned to the fitted normal and the fit
-/// done again. Of noise it keeps an error of about 9.5 noise spacing / radius^3, and of the shape's own change one that
+/// done again. Of noise it keeps an error of about kFitNoiseError noise spacing / radius^3, and of the shape's own change one that
 /// grows as radius^2: 4 % of an ellipsoid of half axes 60, 45, 35 mm at 20 mm.
 /// \param centre  on or near the surface [m]
 /// \return empty if the points determine no quadric

@@ -58,8 +58,8 @@ bool comesNear(const SurfaceMesh& mesh, const Triangle& face, const glm::dvec3& 
 
 double fitBias(double radius, double larger, double smaller) noexcept
 {
-    constexpr double kOneWay = 0.10, kBoth = 0.06; // [1]
-    return radius * radius * (kOneWay * larger * larger + kBoth * std::max(0.0, larger * smaller));
+    constexpr double kOneWayBias = 0.10, kBothBias = 0.06; // [1]
+    return radius * radius * (kOneWayBias * larger * larger + kBothBias * std::max(0.0, larger * smaller));
 }
 
 double facetWidth(const SurfaceMesh& mesh, const glm::dvec3& place, double reach)

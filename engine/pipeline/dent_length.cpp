@@ -43,9 +43,10 @@ double medianOf(std::vector<Weighed> values)
     return values.back().value;
 }
 
-/// Returns the geometric mean of some positive values and so many standard deviations more, but no more than the largest. It
-/// hangs less on single values than a quantile does, and less on which half is the larger than a median.
-double aboveMean(const std::vector<Weighed>& values, double deviations)
+/// Returns the geometric mean of some positive values and so many standard deviations more, but no more than the largest and
+/// no less than the least. It hangs less on single values than a quantile does, and less on which half is the larger than a
+/// median.
+double meanAndDeviations(const std::vector<Weighed>& values, double deviations)
 {
     double all = 0, sum = 0, squares = 0;
     for (const auto& [value, weight] : values) {
@@ -54,8 +55,8 @@ double aboveMean(const std::vector<Weighed>& values, double deviations)
     }
     const double mean = sum / all;
     for (const auto& [value, weight] : values) squares += weight * std::pow(std::log(value) - mean, 2);
-    return std::min(std::exp(mean + deviations * std::sqrt(squares / all)),
-                    std::ranges::max(values, {}, &Weighed::value).value);
+    const auto [least, most] = std::ranges::minmax(values, {}, &Weighed::value);
+    return std::clamp(std::exp(mean + deviations * std::sqrt(squares / all)), least.value, most.value);
 }
 
 /// Returns the radius of a fit about a point [m]: some spacings, a share of the object, and what makes it quiet.
@@ -170,7 +171,7 @@ Asked askedBy(const SoftObject& object, const PatchSettings& settings, const std
     // Where dents end nearly all places have the room that they ask for, where none does hardly one is too steep.
     constexpr double kWide = 1.5, kNarrow = -1; // [standard deviations]
     const double     share = ended / all;
-    Asked            asked{.lengths = {.window = aboveMean(widths, std::lerp(kNarrow, kWide, share))}, .share = share};
+    Asked asked{.lengths = {.window = meanAndDeviations(widths, std::lerp(kNarrow, kWide, share))}, .share = share};
     if (lengths.empty()) return asked;
     const auto [least, most] = std::ranges::minmax(lengths, {}, &Weighed::value);
     asked.lengths            = {least.value, medianOf(lengths), most.value, asked.lengths.window};
@@ -230,19 +231,23 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
 {
     constexpr double   kAllOver = 0.9; // of the surface [1]
     const DentLengths& lengths  = by.lengths;
+    const bool         allOver  = by.share >= kAllOver;
     std::string        reach    = "dents of this object, which die away over " + formatQuantity(lengths.typical, "m");
-    if (by.share < kAllOver)
-        reach += " on " + std::to_string(std::lround(100 * by.share)) +
-                 " % of it and reach far on the rest, see the support range";
-    const std::string asked = reach + ", ask for " + formatQuantity(lengths.window, "m");
+    if (!allOver)
+        reach += " on " + std::to_string(std::lround(100 * by.share)) + " % of it and reach far on the rest" +
+                 (settings.theory == Theory::shell ? ", see the support range" : "");
+    const std::string asked  = reach + ", ask for " + formatQuantity(lengths.window, "m");
+    const std::string anyhow = "four radii of the fingertip, because ";
+    const std::string middle = "as wide as the object is about its middle, where " + asked;
     const double filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kFewestCells;
     const double width = std::min({lengths.window, filled, carried});
-    if (width < least) return {least, "four radii of the fingertip, because " + reach + ", ask for less"};
+    if (lengths.window < least) return {least, anyhow + reach + ", ask for less"};
+    if (width < least) return {least, anyhow + "the object is hardly wider about its middle"};
     if (width == carried)
         return {width, "as wide as " + std::to_string(settings.cells) + " cells carry this fingertip, where " + asked +
                            "; take more cells"};
-    if (width == filled) return {width, "as wide as the object is about its middle, where " + asked};
-    return {width, "as wide as " + reach + ", ask for at nearly all places"};
+    if (width == filled) return {width, middle};
+    return {width, "as wide as " + reach + ", ask for " + (allOver ? "at nearly all places" : "on average")};
 }
 
 Choice chosen(const SoftObject& object, const PatchSettings& settings)
@@ -259,9 +264,9 @@ Choice chosen(const SoftObject& object, const PatchSettings& settings)
                     "surface is curved, --theory shell"};
     const std::string why = "because nothing ends the dents of what is curved one way, against each other or hardly at "
                             "all; see the support range";
-    const double      width = std::max(asked.lengths.window, least);
-    if (width < settings.window) return {width, "which sags by a fourth of it at most places, " + why};
-    return {settings.window, "the width without auto, " + why};
+    if (asked.lengths.window >= settings.window) return {settings.window, "the width without auto, " + why};
+    if (asked.lengths.window < least) return {least, "four radii of the fingertip, " + why};
+    return {asked.lengths.window, "over which most of the surface sags by no more than a fourth, " + why};
 }
 
 } // namespace
@@ -275,7 +280,6 @@ double shellLengthRoot(const Material& material) noexcept
 DentReach dentReach(double most, double least, const Material& material, double below) noexcept
 {
     constexpr double kAlike = 2, kFarther = 0.7; // ratio of the curvatures; power, see DentReach [1]
-    constexpr double kRound = 4 * kOneWay;       // ratio from which on a window may wrap round [1]
     // What is curved one way ends nothing, whichever side of it the fits' noise says that it bends to the other way.
     const double ratio = most == 0 ? 0 : least / most;
     const double perRoot =
@@ -285,10 +289,10 @@ DentReach dentReach(double most, double least, const Material& material, double 
     const double length = std::pow(ends, -0.25);
     const double unlike = ends / (perRoot * least * least + below); // of the softest wave
     const double window = kLocalWindow * std::max(1.0, std::pow(unlike / kAlike, kFarther));
-    if (below > 0) return {length, window};
-    const double part  = std::clamp((ratio - kOneWay) / (kRound - kOneWay), 0.0, 1.0);
-    const double radii = std::lerp(kShallowRadii, kMostRadii, part);
-    return {length, std::min(window, radii / (std::abs(most) * length))};
+    const double part   = std::clamp((ratio - kOneWay) / (kBothWays - kOneWay), 0.0, 1.0);
+    const double radii  = std::lerp(kShallowRadii, kMostRadii, part);
+    const double capped = std::min(window, radii / (std::abs(most) * length));
+    return {length, ratio > kOneWay ? std::lerp(capped, window, below / ends) : window}; // a foundation knows no radius
 }
 
 std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings)

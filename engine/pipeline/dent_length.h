@@ -20,6 +20,9 @@ inline constexpr double kMostSag = 0.25;
 /// The lesser principal curvature over the larger up to which a surface counts as curved one way: dents then reach far [1].
 inline constexpr double kOneWay = 0.02;
 
+/// The same from which on it surely bulges both ways [1]: bodies down to it were compared with solids.
+inline constexpr double kBothWays = 0.1;
+
 /// Returns the width beyond which the edges of a plate's window on a foundation are not felt, in lengths l = (D/k)^(1/4) [1].
 ///
 /// 10 hold the compliance to 0.1 %, and 12 where D varies by more than 10; measured against windows of 24 l for warts.
@@ -56,10 +59,9 @@ struct DentLengths {
     double window = 0; ///< width of a patch window, one for all of the object, see dentWindow() [m]
 };
 
-/// Finds how far dents reach where the sheet's own stiffness, or what lies below it, ends them:
-/// l^-4 = 12 (1 - nu^2) K / h^2 + k / D, K the Gaussian curvature where the surface bulges both ways, k the foundation.
+/// Finds how far dents reach where the sheet's own stiffness, or what lies below it, ends them, see dentReach(). Places count
+/// by the area around them, so that it does not matter where the points are dense.
 /// \param settings  the foundation; the membrane counts only where the theory is a shell's
-/// Places count by the area around them, so that it does not matter where the points are dense.
 /// \return empty if at most places nothing ends them: the object's supports, or the window's edges, then decide
 /// \note takes milliseconds, and longer on dense clouds
 /// \thread pure

@@ -89,7 +89,7 @@ struct PatchSettings {
 };
 
 /// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what it
-/// spans. One of a dent is as wide as most places of the object ask for, or as `window` says where nothing ends a dent; that
+/// spans. One of a dent is as dentWindow() says; that
 /// takes milliseconds, so settle once before many touches. One of the object is twice as wide as the object is long, so that
 /// it holds all of it about any contact; its cells are as wide as `window` and `cells` say, but no finer than a fourth of the
 /// fingertip; there are 256 to 512, and of shells 256; and its sides, in the void, are free. A second time changes nothing.

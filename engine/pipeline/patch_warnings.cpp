@@ -67,13 +67,18 @@ std::string tooDeep(double sag, bool bulges)
                   "support range");
 }
 
-/// Says which window a dent asks for [m].
+/// Says which window a dent asks for, and how many cells carry the fingertip in it.
+/// \param width  [m]
 std::string widerWindow(double width, const PatchSettings& settings)
 {
-    constexpr int kTogether = 16;
-    const int     cells     = int(std::ceil(kFewestCells * width / settings.footprintRadius / kTogether)) * kTogether;
-    return "a --window of " + formatQuantity(width, "m") +
-           (cells > settings.cells ? " with --cells " + std::to_string(cells) : "");
+    constexpr int kTogether = 16, kMostCells = 1024; // a multiple that a multigrid can coarsen; that a scene may have
+    const int     cells =
+        int(std::ceil(std::min(kFewestCells * width / settings.footprintRadius, 2.0 * kMostCells) / kTogether)) *
+        kTogether;
+    return "try a --window of " + formatQuantity(width, "m") +
+           (cells > kMostCells       ? " with a wider fingertip"
+            : cells > settings.cells ? " with --cells " + std::to_string(cells)
+                                     : "");
 }
 
 /// Returns the stiffness of the membrane that a plate leaves out, over what else resists the slowest wave in the window: as
@@ -91,8 +96,7 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                   const Material& material)
 {
     constexpr double kFolded = 0.5, kNearly = 0.95, kFelt = 0.2, kHardly = 0.02; // [1]
-    constexpr double kShown    = 0.005; // half of what is printed of a sag is no excess [1]
-    constexpr double kComputed = 0.1;   // ratio of the curvatures down to which bodies were compared, see tooDeep() [1]
+    constexpr double kShown = 0.005; // half of what is printed of a sag is no excess [1]
     if (settings.theory == Theory::plate && settings.neighbourhood == Neighbourhood::surface &&
         membraneLeftOut(patch, settings, material) > kFelt)
         result.push_back(
@@ -110,13 +114,10 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
     const double asked =
         dentReach(most, least, material, settings.foundation / rigidityAtContact(patch)).window; // [lengths]
     if (!whole && lengths < kNearly * asked && ends)
-        result.push_back(
-            "the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
-            formatQuantity(patch.shellLength, "m") + " each), so that its edges are felt; " +
-            (settings.windowOf == WindowOf::dent ? "auto has one width for all of the object, and here " : "try ") +
-            widerWindow(asked * patch.shellLength, settings) +
-            (settings.windowOf == WindowOf::dent ? " would do" : "") +
-            ", or object, with what holds it, where the object is smaller than that");
+        result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
+                         formatQuantity(patch.shellLength, "m") + " each), so that its edges are felt; " +
+                         widerWindow(asked * patch.shellLength, settings) +
+                         ", or object, with what holds it, where the object is smaller than that");
     else if (!whole && !ends)
         result.push_back(
             "the surface is " +
@@ -125,7 +126,7 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                                                   : "curved one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most > kComputed));
+    if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most > kBothWays));
     if (patch.unrolled > kFolded)
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }

@@ -8,9 +8,10 @@
 namespace palp {
 
 /// Returns, in sentences, the limits of theory and data that a user of a result must know. Empty is good.
+/// \param settings  as the scene has them, or settledFor() it
 /// \param force     that presses [N]
-/// \param material  says how deep that is; by default a linear one
+/// \param material  of the object
 [[nodiscard]] std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force,
-                                                const Material& material = {});
+                                                const Material& material);
 
 } // namespace palp

@@ -5,7 +5,7 @@ namespace palp {
 
 /// Takes after each failure how long a force went on, and says whether that is in time.
 ///
-/// All but one in fifty have to be below the limit, and all below twice of it: where other programs hold the processors, who
+/// All but one, and one more in fifty, have to be below the limit, and all below twice of it: where other programs hold the processors, who
 /// wakes up gets one a slice of the scheduler later. A guardian that waits too long, or not for its clock, is late every time.
 class ZeroInTime {
 public:

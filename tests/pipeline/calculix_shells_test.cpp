@@ -246,8 +246,6 @@ TEST(CalculixBodies, GiveWayAsAWhole)
         EXPECT_NEAR(patch.compliance / exact, 1, 0.015)            // 1.1 % at h/R 0.04: shear counts to the first order
             << of.thickness;
         EXPECT_LT((patch.compliance - patch.bodyCompliance) / exact, 0.985) << "then the body is not seen";
-        EXPECT_NEAR(supportRange(cloud, patch, settings, host)->supported / patch.feltStiffness, 1, 1e-3)
-            << "the same edges";
         EXPECT_LT(*discretisationError(patch, settings, host), 0.01) << "the body is on no grid";
 
         settings.edges = {Edge::clamped, Edge::supported, Edge::supported, Edge::supported};

@@ -281,7 +281,7 @@ TEST(Warnings, AskForTheWindowThatTheFoundationNeeds)
         PlateSolver   solver("host");
         const Contact contact = touchAt(object, {0, 0, 0}, glm::dvec3(0, 0, 1), 10e-3);
         const Patch   patch   = deform(object, contact, settings, solver);
-        const auto    all     = warnings(patch, settings, 0.01);
+        const auto    all     = warnings(patch, settings, 0.01, object.material());
         return std::any_of(all.begin(), all.end(),
                            [](const std::string& s) { return s.find("its edges are felt") != std::string::npos; });
     };

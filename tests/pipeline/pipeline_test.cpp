@@ -49,7 +49,7 @@ Object noisyBowl(unsigned seed)
 
 bool warned(const Patch& patch, const PatchSettings& settings, double force, const char* words)
 {
-    const auto sentences = warnings(patch, settings, force);
+    const auto sentences = warnings(patch, settings, force, {.thickness = patch.thickness});
     return std::any_of(sentences.begin(), sentences.end(),
                        [&](const std::string& s) { return s.find(words) != std::string::npos; });
 }

@@ -363,7 +363,17 @@ TEST(ShellPatch, OfWhatIsFlatTheRangeBetweenSupportsIsToldToo)
     PlateSolver host("host");
     const auto  range = supportRange(flat, patch, kShell, host);
     ASSERT_TRUE(range);
-    EXPECT_NEAR(range->supported / patch.feltStiffness, 1, 1e-3) << "its own edges";
+    PatchSettings held = kShell;
+    held.edges         = {Edge::clamped, Edge::clamped, Edge::clamped, Edge::clamped};
+    for (const auto& [object, place] :
+         {std::pair{flat, glm::dvec3(0)},
+          std::pair{sheet([](double x, double y) { return 10 * (x * x - y * y); }), glm::dvec3(0)},
+          std::pair{ellipsoid({60e-3, 45e-3, 35e-3}, 0), glm::dvec3(0, 0, 35e-3)}}) {
+        const Patch supported = touchOf(object, place), clamped = touchOf(object, place, held);
+        const auto  of = supportRange(object, supported, kShell, host), by = supportRange(object, clamped, held, host);
+        EXPECT_NEAR(by->supported / supported.feltStiffness, 1, 1e-3) << "whichever edges the answer has";
+        EXPECT_NEAR(of->clamped / clamped.feltStiffness, 1, 1e-3);
+    }
     EXPECT_NEAR(range->clamped / range->supported, 0.01160 / 0.00560, 0.1)
         << "Timoshenko, square plates under a point load";
     EXPECT_FALSE(supportRange(flat, patch, asPlate(), host)) << "a plate's edges are what the scene says";
@@ -470,8 +480,7 @@ TEST(ShellPatch, ADeepWindowChangesADomeByNothingAndATubeByMuch)
         const double round = softer(ball, sag), oneWay = softer(tube, sag);
         std::printf("  sag %.1f: sphere %+.2f %%, tube %+.0f %%\n", sag, 100 * round, 100 * oneWay);
         EXPECT_LT(std::abs(round), 0.01);
-        EXPECT_GT(oneWay, 0.1) << "the direction that is told";
-        EXPECT_LT(oneWay, sag / 0.25 - 1);
+        EXPECT_NEAR(oneWay, sag < 0.4 ? 0.14 : 0.56, 0.03) << "method.md; measured with other points too";
     }
 }
 

@@ -120,7 +120,7 @@ TEST(TouchedSurface, ALayerBehindTheNamedPlaceIsTold)
     both.add(sheet(20'000, -0.4e-3, 2), uniform);
     const SoftObject body = both.object();
     const auto       told = [&](const glm::dvec3& from) {
-        const auto said = warnings(touch(body, {0, 0, 0}, from), PatchSettings{}, 0.1);
+        const auto said = warnings(touch(body, {0, 0, 0}, from), PatchSettings{}, 0.1, body.material());
         return std::ranges::any_of(said, [](const std::string& s) { return s.find("another layer") != s.npos; });
     };
     EXPECT_TRUE(told({0, 0, -1})) << "the place is in front, the finger behind: the back is what it touches";

@@ -67,7 +67,6 @@ double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchS
     if (!patch.curvature || !patch.covered.values().empty()) return 0;
     // What is far away decides, not a bump at the contact: a hand that slides on meets no step.
     const auto [gaussian, largest] = meanCurvature(*patch.curvature);
-    constexpr double kBothWays     = 0.1; // of the square of the larger curvature: less is hardly a dome [1]
     if (!(gaussian > kBothWays * largest)) return 0;
     const double nu = object.material().poissonRatio, radius = 1 / std::sqrt(gaussian);
     // Neither what bulges hardly more than one way, nor what is flat beside the body's size, is part of a dome.

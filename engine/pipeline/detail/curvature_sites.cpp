@@ -88,10 +88,9 @@ Facing facing(const SoftObject& object, std::uint32_t begin, std::uint32_t end, 
 void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end,
               double area, double radius)
 {
-    constexpr double kNoiseError = 9.5; // of the tensor over noise spacing / radius^3, see fitCurvature() [1]
     for (const bool alike : {true, false}) {
         const Facing points = facing(object, begin, end, alike);
-        const double noisy  = kNoiseError * points.noise / (radius * radius * kQuiet); // [1]
+        const double noisy  = kFitNoiseError * points.noise / (radius * radius * kQuiet); // [1]
         const double each   = area / std::clamp(noisy, 1.0, kMostSites);
         if (points.ranks.empty() || points.area < kCorner * each) continue;
         const auto pieces =
@@ -137,8 +136,8 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
 
 double quietFitRadius(double noise, double spacing) noexcept
 {
-    constexpr double kError = 9.5, kMost = 0.5; // [1]; [1/m]
-    return std::cbrt(kError / kMost * noise * spacing);
+    constexpr double kMost = 0.5; // [1/m]
+    return std::cbrt(kFitNoiseError / kMost * noise * spacing);
 }
 
 std::pair<double, double> principalOf(const LocalCurvature& fit) noexcept

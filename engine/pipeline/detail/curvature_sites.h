@@ -28,7 +28,7 @@ struct LaidPoints {
 [[nodiscard]] std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
                                                           const glm::dvec3& outward, double radius);
 
-/// Returns the radius from which on noise changes a fit by 0.5 1/m or less [m]: its error is 9.5 noise spacing / radius^3.
+/// Returns the radius from which on noise changes a fit by 0.5 1/m or less [m]: its error is kFitNoiseError noise spacing / radius^3.
 /// \param noise, spacing  of the points [m]
 [[nodiscard]] double quietFitRadius(double noise, double spacing) noexcept;
 

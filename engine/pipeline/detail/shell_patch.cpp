@@ -198,10 +198,9 @@ std::string whyFlat(const Patch& patch, const SoftObject& object, const PatchSet
     if (settings.neighbourhood == Neighbourhood::ball)
         return "the points of a ball are no surface with a curvature; set neighbourhood surface";
     if (patch.normalFelt) return "the points around determine no curvature, as at a rim";
-    if (isLensAtContact(patch, object, settings.windowOf == WindowOf::object ? settings.window / 2 : settings.window))
+    if (isLensAtContact(patch, object, bentSize(object, settings)))
         return "the object is one thin sheet whose two faces bulge to either side, so that its middle is flatter than "
-               "the "
-               "face that is touched; give the points of one face, laid on the middle, if it is curved";
+               "the face that is touched; give the points of one face, laid on the middle, if it is curved";
     return {};
 }
 

@@ -14,7 +14,7 @@ namespace palp {
 namespace {
 
 /// A curvature tensor in a chart's axes.
-struct Bend {
+struct BendInChart {
     double x = 0, z = 0, xz = 0; ///< [1/m]
 };
 
@@ -28,8 +28,8 @@ double radiusFor(const TouchedSurface& surface, const PatchSettings& settings)
 }
 
 /// Returns how the surface bends about the contact; empty where its points determine that nowhere.
-std::optional<Bend> bendAbout(const Chart& chart, const SoftObject& object, const TouchedSurface& surface,
-                              double radius)
+std::optional<BendInChart> bendAbout(const Chart& chart, const SoftObject& object, const TouchedSurface& surface,
+                                     double radius)
 {
     std::vector<std::uint32_t> ranks;
     std::vector<ChartPoint>    places;
@@ -41,9 +41,9 @@ std::optional<Bend> bendAbout(const Chart& chart, const SoftObject& object, cons
         places.push_back({glm::dot(d, chart.frame.east), glm::dot(d, chart.frame.north)});
         normals.push_back(surface.normalAt(k));
     }
-    const int rung = int(std::lround(rungOf(radius)));
-    Bend      sum;
-    double    all = 0;
+    const int   rung = int(std::lround(rungOf(radius)));
+    BendInChart sum;
+    double      all = 0;
     for (const CurvatureSite& site : curvatureSites(object, {ranks, places, normals}, rung, FitsFor::field)) {
         const double     near   = 1 - (site.place.x * site.place.x + site.place.z * site.place.z) / (radius * radius);
         const double     weight = site.share * near * near;
@@ -54,7 +54,7 @@ std::optional<Bend> bendAbout(const Chart& chart, const SoftObject& object, cons
         all += weight;
     }
     if (!(all > 0)) return {};
-    return Bend{sum.x / all, sum.z / all, sum.xz / all};
+    return BendInChart{sum.x / all, sum.z / all, sum.xz / all};
 }
 
 /// Returns the angle from a principal direction to a side of the window [rad]; empty if it is not to be turned.

@@ -5,8 +5,8 @@
 namespace palp {
 
 /// Returns the chart's axes turned so that the corners of the window lie along the principal directions of the touched
-/// surface, by the least angle that does; of a window with clamped edges the sides lie there. As they are where it bends much
-/// the same both ways, for a plate and where the sides are not alike.
+/// surface, by the least angle that does; of a window with clamped edges the sides lie there. They stay as they are where
+/// it bends nearly alike both ways, for a plate, and where the sides are not all supported or all clamped.
 ///
 /// The dent of a shell that is curved both ways unequally reaches farthest along these directions, and a square farthest to
 /// its corners. So what is felt does not depend on how the object, or the hand's way to the place, has turned the chart: with

@@ -15,6 +15,7 @@
 #include "engine/plate/multigrid/detail/shell_processor.h"
 
 namespace palp {
+
 struct MultigridShellSolver::Impl {
     /// Conjugate gradients by vectors of one kind.
     template <class Fields>

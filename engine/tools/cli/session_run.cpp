@@ -37,7 +37,7 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
         const HandPlace          place = handPlace(scene, object);
         PlateSolver              host("host");
         const Patch              patch = deform(object, {place.point, place.outward}, scene.patch, host);
-        std::vector<std::string> said  = warnings(patch, scene.patch, 0);
+        std::vector<std::string> said  = warnings(patch, scene.patch, 0, scene.material);
         for (std::string& line : curvatureDoubts(object, patch)) said.push_back(std::move(line));
         return said;
     } catch (const Error& error) { // a hand from a file may work elsewhere
