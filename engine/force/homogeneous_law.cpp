@@ -45,7 +45,7 @@ std::optional<ComplianceTable::Values> HomogeneousLaw::at(const glm::dvec3& plac
     for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
             for (int dz = -1; dz <= 1; ++dz) {
-                const auto [first, last] = std::ranges::equal_range(keys_, keyOf(place, dx, dy, dz));
+                const auto [first, last] = std::equal_range(keys_.begin(), keys_.end(), keyOf(place, dx, dy, dz));
                 for (auto key = first; key != last; ++key) {
                     const Site&      site  = sites_[std::size_t(key - keys_.begin())];
                     const glm::dvec3 away  = (site.point - place) / (kReach * cell_);

@@ -146,15 +146,15 @@ struct PlateSolver::Multigrid {
 
         /// Makes the solver ready for a rigidity.
         /// \return milliseconds that it took
-        double prepare(compute::Context& context, const PlateKernels& kernels, const Plate& wanted,
-                       std::size_t wantedLoads, double wantedTolerance)
+        double prepare(compute::Context& on, const PlateKernels& by, const Plate& wanted, std::size_t wantedLoads,
+                       double wantedTolerance)
         {
             const auto began = std::chrono::steady_clock::now();
             if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == wantedLoads) {
                 solver->setRigidity(wanted.rigidity, wanted.foundationShape);
             } else {
                 solver.reset(); // its memory goes before the next one's comes
-                solver.emplace(context, kernels, wanted,
+                solver.emplace(on, by, wanted,
                                MultigridPlateSolver::Settings{.tolerance = wantedTolerance, .loads = int(wantedLoads)});
                 plate     = wanted;
                 tolerance = wantedTolerance;

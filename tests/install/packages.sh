@@ -11,9 +11,9 @@ needs() { # needs FIELD WORD...: the field of the package names these
     for word; do case $found in *"$word"*) ;; *) complain "$package: no $word in \"$found\"" ;; esac; done
 }
 holds() { # holds PATTERN...: files of the package, of which nothing lies outside /usr
-    dpkg-deb -c "$package" >list
-    for pattern; do grep -q "$pattern\$" list || complain "$package holds nothing like $pattern: $(tail -5 list)"; done
-    if sed 's/ -> .*//' list | grep -v ' \./$' | grep -v ' \./usr/'; then complain "$package: files outside /usr"; fi
+    dpkg-deb -c "$package" >contents.txt
+    for pattern; do grep -q "$pattern\$" contents.txt || complain "$package holds nothing like $pattern: $(tail -5 contents.txt)"; done
+    if sed 's/ -> .*//' contents.txt | grep -v ' \./$' | grep -v ' \./usr/'; then complain "$package: files outside /usr"; fi
 }
 one() { # one NAME: finds the package
     set -- "$1"_*.deb
@@ -26,7 +26,7 @@ needs Depends libc6 libembree libvulkan1
 needs Recommends mesa-vulkan-drivers
 holds bin/palpate lib/udev/rules.d/70-palpate-falcon.rules share/man/man1/palpate.1.gz share/bash-completion/completions/palpate \
     share/applications/palpate.desktop icons/hicolor/scalable/apps/palpate.svg share/palpate/scenes/palm.json share/doc/palpate/copyright share/doc/palpate/changelog.gz
-if grep -E 'include/|\.(a|so|py)( |$)' list; then complain 'the program comes with files for developers'; fi
+if grep -E 'include/|\.(a|so|py)( |$)' contents.txt; then complain 'the program comes with files for developers'; fi
 dpkg-deb -I "$package" postinst | grep -q 'udevadm trigger' || complain "$package does not tell udev"
 
 one libpalpate0
