@@ -168,8 +168,8 @@ void runBench(const BenchOptions& o)
     becomeBenchmark();
     const BenchReport report = measure(o);
     if (report.rows.empty())
-        throw Error(
-            "--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update, table and shell are for 65 to 129");
+        throw Error("--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update, table and "
+                    "shell are for 65 to 129");
     if (!o.out.empty()) {
         makeFolder(o.out);
         const std::filesystem::path folder = o.out;
@@ -180,8 +180,9 @@ void runBench(const BenchOptions& o)
         writeFileWhole(folder / "plate.txt", [&](std::ostream& file) { printText(file, report); });
         for (const auto& [kind, map] :
              {std::pair("new_map", "linear"), {"new_load", "linear"}, {"contrast", "disc_100"}})
-            if (std::ranges::any_of(report.rows,
-                                    [&](const BenchRow& row) { return row.kind == kind && row.map == map; }))
+            if (std::ranges::any_of(report.rows, [&, kind = kind, map = map](const BenchRow& row) {
+                    return row.kind == kind && row.map == map;
+                }))
                 write((std::string(kind) + ".svg").c_str(), plotOf(report, kind, map));
     }
     if (o.json)

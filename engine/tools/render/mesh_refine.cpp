@@ -87,7 +87,7 @@ private:
         const auto          all = std::ranges::count(is, true);
         // One long edge becomes the first one; of two the short one does.
         for (int turn = 0; turn < 2 && (all == 1 ? !is[0] : all == 2 && is[0]); ++turn) {
-            std::ranges::rotate(face, face.begin() + 1);
+            std::rotate(face.begin(), face.begin() + 1, face.end());
             is = long3();
         }
         const auto [a, b, c] = face;

@@ -162,7 +162,7 @@ void MeshSkin::addSiblings(std::vector<std::uint32_t>& corners)
             corners.push_back(++c);
     }
     std::ranges::sort(corners);
-    corners.erase(std::ranges::unique(corners).begin(), corners.end());
+    corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
 }
 
 /// Gives the moving corners of a place the mean of their values.
