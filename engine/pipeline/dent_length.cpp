@@ -238,7 +238,6 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
                  (settings.theory == Theory::shell ? ", see the support range" : "");
     const std::string asked  = reach + ", ask for " + formatQuantity(lengths.window, "m");
     const std::string anyhow = "four radii of the fingertip, because ";
-    const std::string middle = "as wide as the object is about its middle, where " + asked;
     const double filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kFewestCells;
     const double width = std::min({lengths.window, filled, carried});
     if (lengths.window < least) return {least, anyhow + reach + ", ask for less"};
@@ -246,7 +245,7 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
     if (width == carried)
         return {width, "as wide as " + std::to_string(settings.cells) + " cells carry this fingertip, where " + asked +
                            "; take more cells"};
-    if (width == filled) return {width, middle};
+    if (width == filled) return {width, "as wide as the object is about its middle, where " + asked};
     return {width, "as wide as " + reach + ", ask for " + (allOver ? "at nearly all places" : "on average")};
 }
 

@@ -126,8 +126,9 @@ void drawScaleBar(SvgDrawing& svg, double pixelsPerMetre, glm::dvec2 rightEnd)
 }
 
 /// Looks at the contact from outside, 55 degrees off its normal, so that a dent shows its depth.
-glm::dvec3 obliquely(const Frame& frame)
+glm::dvec3 obliquely(const glm::dvec3& normal)
 {
+    const Frame frame = Frame::about(normal); // the window may stand on its corner
     return -glm::normalize(0.57 * frame.normal + 0.30 * frame.east - 0.76 * frame.north);
 }
 
@@ -206,7 +207,7 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
     const bool   given = glm::length(view.direction) > 0;
     figure.title       = view.title;
     figure.up          = given ? glm::dvec3(0, 0, 1) : first.chart.frame.normal;
-    figure.direction   = given ? view.direction : obliquely(first.chart.frame);
+    figure.direction   = given ? view.direction : obliquely(first.chart.frame.normal);
     if (view.closeUp) figure.window = FigureWindow{first.contact.point, 0.75 * bentSize(first)};
     return cloudFigureSvg(cloud.positions(), positions, depth, figure, renderer);
 }

@@ -247,7 +247,7 @@ void TouchView::show(const Patch* patch, double force, const TouchLook& look, co
 Camera cameraAt(const Patch& patch, double aspect)
 {
     constexpr double kAround = 0.62; // radius of what must be seen, of the window's edge [1]
-    const Frame&     frame   = patch.chart.frame;
+    const Frame      frame   = Frame::about(patch.chart.frame.normal); // the window may stand on its corner
     Camera           camera;
     camera.up    = frame.normal;
     camera.toEye = glm::normalize(0.62 * frame.normal + 0.30 * frame.east - 0.72 * frame.north);

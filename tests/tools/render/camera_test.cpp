@@ -6,6 +6,8 @@
 #include <glm/gtc/constants.hpp>
 #include <gtest/gtest.h>
 
+#include "engine/tools/render/touch_view.h"
+
 namespace palp {
 namespace {
 
@@ -143,6 +145,17 @@ TEST(Camera, FramedShowsTheWholeBallAndFillsThePicture)
             EXPECT_LT(widest, 1);
             EXPECT_GT(widest, 0.85);
         }
+}
+
+/// Or pictures of one object, touched here and there, could not be compared.
+TEST(Camera, LooksTheSameWayHoweverTheWindowStands)
+{
+    Patch patch;
+    patch.window          = PatchWindow::square(40e-3, 16);
+    patch.chart.frame     = Frame::about(glm::normalize(glm::dvec3(0.1, 0.2, 1)));
+    const Camera straight = cameraAt(patch, 1.5);
+    patch.chart.frame     = patch.chart.frame.turned(0.7);
+    EXPECT_LT(glm::distance(cameraAt(patch, 1.5).toEye, straight.toEye), kRounding);
 }
 
 TEST(Camera, DollyByZeroIsAMistake)
