@@ -102,7 +102,7 @@ inline double largestDifference(const NodeField& a, const NodeField& b)
         most = std::max(most, std::abs(a.values()[n] - b.values()[n]));
         size = std::max(size, std::abs(b.values()[n]));
     }
-    return most / size;
+    return size > 0 ? most / size : most; // of a load of nothing
 }
 
 } // namespace palp

@@ -230,7 +230,14 @@ protected:
 
         std::vector<std::uint32_t> wanted(100, 5);
         if (host::step(push, partials, shape.x, expected)) std::fill(wanted.begin(), wanted.end() - 3, 0U);
-        EXPECT_TRUE(agree(state, expected, ownSizes(expected), kScalarRounding));
+        // Where a share is 1 but for its rounding, the square root of 1 - share takes the root of that.
+        std::vector<double> sizes = ownSizes(expected);
+        for (std::size_t load = 0; load < pq.size(); ++load) {
+            const std::size_t at = load * std::size_t(shared::kStateWords);
+            sizes[at + std::size_t(shared::kStateAlong)] +=
+                sizes[at + std::size_t(shared::kStateLast)] / std::sqrt(double(std::numeric_limits<Real>::epsilon()));
+        }
+        EXPECT_TRUE(agree(state, expected, sizes, kScalarRounding));
         EXPECT_EQ(arguments, wanted);
         return {state, arguments};
     }
