@@ -5,7 +5,9 @@
 #include <ctime>
 
 #include "engine/compute/context.h"
+#include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
+#include "engine/plate/plate_solver.h"
 
 namespace palp::bench {
 namespace {
@@ -52,11 +54,27 @@ Quartiles quartiles(std::vector<double> values)
     return {at(0.25), at(0.5), at(0.75)};
 }
 
-Clock clockOf(const compute::Context& context)
+namespace {
+
+Clock clockOf(compute::ProcessorKind kind)
 {
-    const compute::ProcessorKind kind = context.processor().kind;
     return kind == compute::ProcessorKind::software || kind == compute::ProcessorKind::host ? Clock::processor
                                                                                             : Clock::wall;
+}
+
+} // namespace
+
+Clock clockOf(const compute::Context& context)
+{
+    return clockOf(context.processor().kind);
+}
+
+Clock clockOf(const PlateSolver& solver)
+{
+    if (solver.name() == compute::kHostProcessor || solver.name() == PlateSolver::kReference) return Clock::processor;
+    const auto all   = compute::listProcessors();
+    const auto found = std::ranges::find(all, solver.name(), &compute::Processor::name);
+    return found == all.end() ? Clock::processor : clockOf(found->kind);
 }
 
 std::vector<Timing> takeTurns(const std::vector<Contestant>& contestants, int runs)

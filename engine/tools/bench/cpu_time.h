@@ -3,6 +3,9 @@
 #include <string>
 #include <vector>
 
+namespace palp {
+class PlateSolver;
+}
 namespace palp::compute {
 class Context;
 }
@@ -33,6 +36,7 @@ enum class Clock {
 
 [[nodiscard]] double now(Clock clock); ///< [ms]
 [[nodiscard]] Clock  clockOf(const compute::Context& context);
+[[nodiscard]] Clock  clockOf(const PlateSolver& solver); ///< by the processor that it has opened
 
 /// A solver that does the same work as its rivals; its parts are timed separately.
 struct Contestant {
