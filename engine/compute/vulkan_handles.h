@@ -41,6 +41,7 @@ public:
     /// \pre an earlier submission has been finished
     void start(std::span<const VkCommandBuffer> commands);
     void finish();
+    void lookAtFence() const; ///< waits for a short while without sleeping
 
     [[nodiscard]] std::uint64_t patienceInNanoseconds() const; ///< for waits
 
