@@ -5,9 +5,9 @@
 // one, which Vulkan would not promise to end.
 //
 // The includer declares  tickets,  a coherent buffer of one uint per load, which are 0 between dispatches, and declares
-// coherent what the last workgroup reads of the others. Workgroups have a power of two of invocations, at most 256.
+// coherent what the last workgroup reads of the others. Workgroups have a power of two of invocations.
 
-shared real sums[256];
+shared real sums[gl_WorkGroupSize.x * gl_WorkGroupSize.y];
 shared uint ticket;
 
 uint groupsOfLoad() { return gl_NumWorkGroups.x * gl_NumWorkGroups.y; }

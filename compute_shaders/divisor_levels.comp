@@ -1,7 +1,7 @@
 // divisor_levels.comp - inverse divisors of all levels but the coarsest, and tiles in which their rigidities jump, in one
 // dispatch.
 // Domain     x, y: nodes, y over the rows of all levels, then over their rows of tiles; workgroups are one row high;
-//            z: as in plate_divisor.comp; of tiles x and z together are one invocation each
+//            z: as in plate_divisor.comp; a workgroup of tiles marks each of as many as there are workgroups along x
 // Reads      the levels; rigidity and foundation of all [1]
 // Writes     1/divisor [1], 0 on held nodes; 1 for a tile with a jump, else 0
 #version 460
@@ -33,21 +33,30 @@ float otherColour(int i, int j) { return deflection(i, j); }
 const int kMostNodes = 28; // of a workgroup, as in plate_divisor.comp
 shared float entries[kEntries][kMostNodes];
 
-void markTile(int row)
+shared uint jumps;
+
+// Marks tiles of a row, each by the whole workgroup: one invocation would wait for a hundred nodes one after the other.
+void markTiles(int row)
 {
     int l = 0;
     while (row >= levels[l + 1].tileRow) ++l;
     here = levels[l];
     int i = row - here.tileRow;
-    int j = int(gl_WorkGroupID.x * gl_WorkGroupSize.x * gl_WorkGroupSize.z + gl_LocalInvocationIndex);
-    if (j < tilesZ(here.plate)) marks[here.list + i * tilesZ(here.plate) + j] = jumpsInTile(here.plate, i, j) ? 1u : 0u;
+    for (int j = int(gl_WorkGroupID.x); j < tilesZ(here.plate); j += int(gl_NumWorkGroups.x)) {
+        if (gl_LocalInvocationIndex == 0u) jumps = 0u;
+        barrier();
+        for (int n = int(gl_LocalInvocationIndex); n < kNodesAbout; n += int(gl_WorkGroupSize.x * gl_WorkGroupSize.z))
+            if (jumpsAtNth(here.plate, i, j, n)) atomicOr(jumps, 1u);
+        barrier();
+        if (gl_LocalInvocationIndex == 0u) marks[here.list + i * tilesZ(here.plate) + j] = jumps;
+    }
 }
 
 void main()
 {
     int row = int(gl_WorkGroupID.y);
     if (row >= int(push.rows)) { // the whole workgroup
-        markTile(row - int(push.rows));
+        markTiles(row - int(push.rows));
         return;
     }
     int l = 0;

@@ -2,8 +2,7 @@
 //
 // The includer provides  uint markOf(int tile)  and  void put(uint place, uint word),  which writes a word of the list.
 
-const int kMostInvocations = 256;
-shared uint counts[kMostInvocations];
+shared uint counts[gl_WorkGroupSize.x];
 
 // Lists the tiles behind the first word; returns to the last invocation what belongs there.
 uint listTiles(PlateLevel g)

@@ -12,7 +12,6 @@
 #extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile
 
 #include "compute_shaders/plate_prelude.glsl"
-#include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/tail_level.h"
 
 const int kSweeps = kNestedSweeps;

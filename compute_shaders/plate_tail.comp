@@ -1,7 +1,7 @@
 // plate_tail.comp - a whole cycle on the coarse levels, from forces to deflection, by one workgroup per load.
 // Domain     x: one workgroup; z: loads
 // Reads      the levels (see tail_level.h), for all of them rigidity [1], inverse divisor [1] and transfer tables; the
-//            inverse of the coarsest level's matrix, column after column, as pairs of floats; force of the first level
+//            inverse of the coarsest level's matrix, column after column (real); force of the first level
 // Writes     deflection of the first level, 0 on held nodes; deflections put aside on the way down, each invocation its
 //            own nodes'
 #version 460
@@ -9,7 +9,6 @@
 #extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile
 
 #include "compute_shaders/plate_prelude.glsl"
-#include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/tail_level.h"
 
 layout(constant_id = 3) const int kSweeps = 2; // before and after the correction

@@ -3,11 +3,19 @@
 // A dispatch on a small level costs mainly the wait for it, so all small levels together are one dispatch. Invocations
 // exchange numbers of a cycle through shared memory only; deflections put aside on the way down are each invocation's own
 // nodes'. Sweeps, residual and transfers equal those of single dispatches, to the bit; the coarsest level is solved by its
-// inverse, which invocations share better than substitution. It is summed as accurately as in doubles, by pairs of floats:
-// on many GPUs a double takes 32 to 64 times as long as a float.
+// inverse, which invocations share better than substitution, in doubles where the processor has them: also where a double takes
+// 64 times as long as a float that is less than what pairs of floats would take for the same digits.
 //
 // The includer declares push, with the numbers of levels and of nodes of all of them, kSweeps before and after each
 // correction, and  float givenForce(int node),  the force of a node of the level that a cycle begins with.
+
+#ifdef PALPATE_DOUBLE
+#define wide double
+#else
+#define wide float
+#endif
+#undef real
+#define real float // in the cycle
 
 const int kLanes = int(gl_WorkGroupSize.x);
 
@@ -16,7 +24,7 @@ layout(std430, binding = 1) readonly buffer Rigidity { float D[]; };
 layout(std430, binding = 2) readonly buffer Divisor { float inverseDivisor[]; };
 layout(std430, binding = 3) readonly buffer TableX { float tablesX[]; };
 layout(std430, binding = 4) readonly buffer TableZ { float tablesZ[]; };
-layout(std430, binding = 5) readonly buffer Inverse { FloatPair inverse[]; };
+layout(std430, binding = 5) readonly buffer Inverse { wide inverse[]; };
 layout(std430, binding = 7) buffer Aside { float aside[]; };
 
 shared float pool[kTailPool];
@@ -44,22 +52,32 @@ float coarseValue(int i, int j) { return pool[below.w + i * nodesZ(below.plate) 
 #include "compute_shaders/shared/plate_operator.h"
 #include "compute_shaders/shared/plate_relax.h"
 
+// A node of one colour, by its column and its half row. An invocation's own are so many columns and half rows apart.
+ivec2 ownFirst, ownStep;
+
 void enter(int l)
 {
     level = l;
     here = levels[l];
     if (l + 1 < int(push.levels)) below = levels[l + 1];
+    int rowHalf = here.plate.cellsZ / 2 + 1, lane = int(gl_LocalInvocationID.x);
+    ownFirst = ivec2(lane / rowHalf, lane % rowHalf);
+    ownStep = ivec2(kLanes / rowHalf, kLanes % rowHalf);
+}
+
+// The invocation's next node of a colour.
+ivec2 nextOwn(ivec2 own)
+{
+    own += ownStep;
+    int rowHalf = here.plate.cellsZ / 2 + 1;
+    return own.y < rowHalf ? own : ivec2(own.x + 1, own.y - rowHalf);
 }
 
 float forceAt(int node) { return level == first ? givenForce(node) : pool[here.force + node]; }
 
 int asideAt(int node) { return load * int(push.nodes) + here.field + node; }
 
-ivec2 nthOfColour(int n, uint colour)
-{
-    int rowHalf = here.plate.cellsZ / 2 + 1, i = n / rowHalf;
-    return ivec2(i, 2 * (n % rowHalf) + int((uint(i) + colour) & 1u));
-}
+ivec2 ofColour(ivec2 own, uint colour) { return ivec2(own.x, 2 * own.y + int((uint(own.x) + colour) & 1u)); }
 
 bool isNode(ivec2 at) { return at.x <= here.plate.cellsX && at.y <= here.plate.cellsZ; }
 
@@ -70,9 +88,9 @@ void treatColour(uint colour, bool relaxes)
 {
     const int kMost = (kTailHalf + kLanes - 1) / kLanes;
     float fresh[kMost];
-    int lane = int(gl_LocalInvocationID.x);
-    for (int k = 0; k < kMost; ++k) {
-        ivec2 at = nthOfColour(lane + k * kLanes, colour);
+    ivec2 own = ownFirst;
+    for (int k = 0; k < kMost; ++k, own = nextOwn(own)) {
+        ivec2 at = ofColour(own, colour);
         if (isNode(at)) {
             int node = nodeAt(at.x, at.y);
             float load = forceAt(node), w = operatorAt(here.plate, at.x, at.y);
@@ -83,19 +101,18 @@ void treatColour(uint colour, bool relaxes)
         }
     }
     barrier();
-    for (int k = 0; k < kMost; ++k) {
-        ivec2 at = nthOfColour(lane + k * kLanes, colour);
+    own = ownFirst;
+    for (int k = 0; k < kMost; ++k, own = nextOwn(own)) {
+        ivec2 at = ofColour(own, colour);
         if (relaxes && isNode(at)) pool[here.w + nodeAt(at.x, at.y)] = fresh[k];
     }
     barrier();
 }
 
-int nodesOfColour() { return nodesX(here.plate) * (here.plate.cellsZ / 2 + 1); } // at most, see nthOfColour()
-
 void swapWithAside(uint colour)
 {
-    for (int n = int(gl_LocalInvocationID.x); n < nodesOfColour(); n += kLanes) {
-        ivec2 at = nthOfColour(n, colour);
+    for (ivec2 own = ownFirst; own.x <= here.plate.cellsX; own = nextOwn(own)) {
+        ivec2 at = ofColour(own, colour);
         if (isNode(at)) {
             int node = nodeAt(at.x, at.y);
             float left = aside[asideAt(node)];
@@ -109,8 +126,8 @@ void swapWithAside(uint colour)
 // the correction.
 void begin(uint colour, bool down)
 {
-    for (int n = int(gl_LocalInvocationID.x); n < nodesOfColour(); n += kLanes) {
-        ivec2 at = nthOfColour(n, colour);
+    for (ivec2 own = ownFirst; own.x <= here.plate.cellsX; own = nextOwn(own)) {
+        ivec2 at = ofColour(own, colour);
         if (isNode(at)) {
             int node = nodeAt(at.x, at.y);
             if (down)
@@ -132,13 +149,48 @@ void passOn()
     barrier();
 }
 
+// A part of the sum of products with a row of the inverse, four sums side by side: one would wait for each product.
+wide partOfProduct(int nodes, int row, int begin, int end)
+{
+    wide a = wide(0.0f), b = a, c = a, d = a;
+    int  m = begin;
+    for (; m + 4 <= end; m += 4) {
+        a += inverse[m * nodes + row] * wide(forceAt(m));
+        b += inverse[(m + 1) * nodes + row] * wide(forceAt(m + 1));
+        c += inverse[(m + 2) * nodes + row] * wide(forceAt(m + 2));
+        d += inverse[(m + 3) * nodes + row] * wide(forceAt(m + 3));
+    }
+    for (; m < end; ++m) a += inverse[m * nodes + row] * wide(forceAt(m));
+    return (a + b) + (c + d);
+}
+
+// Where there are more invocations than nodes several share a row. Their sums meet, each as two floats, in the pool of the
+// tail's largest level, which holds nothing while the coarsest one is solved.
 void solveCoarsest()
 {
-    int nodes = nodesOf(here.plate);
-    for (int n = int(gl_LocalInvocationID.x); n < nodes; n += kLanes) {
-        FloatPair sum = FloatPair(0.0f, 0.0f);
-        for (int m = 0; m < nodes; ++m) sum = plusProduct(sum, inverse[m * nodes + n], forceAt(m));
-        pool[here.w + n] = sum.high;
+    int nodes = nodesOf(here.plate), lane = int(gl_LocalInvocationID.x);
+    int room = push.levels > 1u ? nodesOf(levels[0].plate) / (2 * nodes) : 0;
+    int parts = max(1, min(kLanes / nodes, 1 + room)), share = (nodes + parts - 1) / parts;
+    wide sum = wide(0.0f);
+    for (int n = lane; n < parts * nodes; n += kLanes) {
+        int part = n / nodes, row = n % nodes;
+        sum = partOfProduct(nodes, row, part * share, min(nodes, (part + 1) * share));
+        if (part == 0) {
+            pool[here.w + row] = float(sum);
+        } else {
+            int at = levels[0].w + 2 * (n - nodes);
+            pool[at] = float(sum);
+            pool[at + 1] = float(sum - wide(pool[at]));
+        }
+    }
+    barrier();
+    if (parts == 1) return;
+    if (lane < nodes) {
+        for (int part = 1; part < parts; ++part) {
+            int at = levels[0].w + 2 * ((part - 1) * nodes + lane);
+            sum += wide(pool[at]) + wide(pool[at + 1]);
+        }
+        pool[here.w + lane] = float(sum);
     }
     barrier();
 }

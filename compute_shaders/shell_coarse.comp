@@ -18,32 +18,57 @@ layout(std430, binding = 3) writeonly buffer Fields { float x[]; };
 
 shared double y[kMostShellUnknowns];
 shared double sums[kShellLanes];
+shared double columns[kShellTogether]; // of L, many at a time: one after the other would wait for memory each
+
+// Reads so many columns from the first one on.
+void bring(uint first, uint count, uint stride)
+{
+    barrier();
+    for (uint n = gl_LocalInvocationID.x; n < count * stride; n += gl_WorkGroupSize.x)
+        columns[n] = factors[first * stride + n];
+    barrier();
+}
 
 void main()
 {
     uint lane = gl_LocalInvocationID.x, lanes = gl_WorkGroupSize.x;
     uint band = push.halfBand, stride = band + 1u, base = gl_WorkGroupID.z * push.numbers;
     for (uint u = lane; u < kMostShellUnknowns; u += lanes) y[u] = u < push.unknowns ? double(b[base + places[u]]) : 0.0;
-    barrier();
-    for (uint c = 0u; c < push.unknowns; ++c) {
-        double first = y[c];
-        for (uint m = 1u + lane; m <= band; m += lanes) y[c + m] -= factors[c * stride + m] * first;
+    // Forwards every invocation solves for a pair at once: it waits for the others once instead of twice.
+    uint together = kShellTogether / stride / 2u * 2u;
+    for (uint c = 0u; c < push.unknowns; c += 2u) {
+        uint at = c % together * stride;
+        if (at == 0u) bring(c, min(together, push.unknowns - c), stride);
+        bool   paired = c + 1u < push.unknowns;
+        double first = y[c], second = y[c + 1u] - columns[at + 1u] * first;
+        for (uint m = 2u + lane; m <= band + 1u; m += lanes) {
+            double rest = y[c + m];
+            if (m <= band) rest -= columns[at + m] * first;
+            if (paired) rest -= columns[at + stride + m - 1u] * second;
+            y[c + m] = rest;
+        }
         barrier();
+        if (paired && lane == 0u) y[c + 1u] = second; // nobody reads it on the way
     }
-    uint whole = band / kShellLanes * kShellLanes;
+    uint whole = band / kShellLanes * kShellLanes, begin = 0u;
     for (uint n = 0u; n < push.unknowns; ++n) {
-        uint c = push.unknowns - 1u - n, at = c * stride;
+        uint c = push.unknowns - 1u - n;
+        if (n % together == 0u) {
+            begin = c + 1u > together ? c + 1u - together : 0u;
+            bring(begin, c + 1u - begin, stride);
+        }
+        uint at = (c - begin) * stride;
         for (uint k = lane; k < kShellLanes; k += lanes) {
             double sum = 0.0;
-            for (uint m = 1u + k; m <= whole; m += kShellLanes) sum += factors[at + m] * y[c + m];
+            for (uint m = 1u + k; m <= whole; m += kShellLanes) sum += columns[at + m] * y[c + m];
             sums[k] = sum;
         }
         barrier();
         if (lane == 0u) {
             double sum = 0.0;
-            for (uint m = whole + 1u; m <= band; ++m) sum += factors[at + m] * y[c + m];
+            for (uint m = whole + 1u; m <= band; ++m) sum += columns[at + m] * y[c + m];
             for (uint k = 0u; k < kShellLanes; ++k) sum += sums[k];
-            y[c] = factors[at] * y[c] - sum;
+            y[c] = columns[at] * y[c] - sum;
         }
         barrier();
     }

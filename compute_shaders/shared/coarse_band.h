@@ -9,7 +9,12 @@
 #include "compute_shaders/shared/plate_level.h"
 
 #ifdef __cplusplus
+#include <cmath>
 namespace palp::shared {
+using std::sqrt;
+#define PALPATE_PRECISE
+#else
+#define PALPATE_PRECISE precise
 #endif
 
 const int kMostCoarseCells = 16; // along either side; the kernels' shared arrays are made for it
@@ -40,6 +45,25 @@ PALPATE_INLINE int rowOf(PlateLevel g, int unknown)
     return zIsShorter(g) ? unknown % shorterNodes(g) : unknown / shorterNodes(g);
 }
 
+// 1 / sqrt(x), the inverse of the factor's diagonal. That of a double comes from a float's by two steps of Newton's method,
+// each of which doubles the digits: a GPU takes a thousand cycles of its clock for a root and a quotient of doubles, for
+// which all columns of the factor would wait, one after the other. Pivots are of order one, and no smaller than 1e-30.
+PALPATE_INLINE float inverseRoot(float x)
+{
+    PALPATE_PRECISE float root = sqrt(x), inverse = 1.0f / root;
+    return inverse;
+}
+#if defined(__cplusplus) || defined(PALPATE_DOUBLE)
+PALPATE_INLINE double inverseRoot(double x)
+{
+    PALPATE_PRECISE double once  = double(inverseRoot(float(x)));
+    PALPATE_PRECISE double twice = once + once * (double(0.5f) - double(0.5f) * x * once * once);
+    PALPATE_PRECISE double root  = twice + twice * (double(0.5f) - double(0.5f) * x * twice * twice);
+    return root;
+}
+#endif
+
+#undef PALPATE_PRECISE
 #ifdef __cplusplus
 } // namespace palp::shared
 #endif

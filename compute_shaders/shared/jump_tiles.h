@@ -17,11 +17,18 @@ bool jumpsAround(PlateLevel g, int i, int j)
     return most > kJump * least;
 }
 
+const int kNodesAbout = (kTile + 2) * (kTile + 2); // of a tile and beside it
+
+// Returns whether the rigidity jumps at the n-th of these nodes; it does not beyond the plate.
+bool jumpsAtNth(PlateLevel g, int tileI, int tileJ, int n)
+{
+    int i = tileI * kTile - 1 + n / (kTile + 2), j = tileJ * kTile - 1 + n % (kTile + 2);
+    return i >= 0 && i <= g.cellsX && j >= 0 && j <= g.cellsZ && jumpsAround(g, i, j);
+}
+
 bool jumpsInTile(PlateLevel g, int tileI, int tileJ)
 {
     bool jumps = false;
-    for (int i = max(0, tileI * kTile - 1); i <= min(g.cellsX, (tileI + 1) * kTile); ++i)
-        for (int j = max(0, tileJ * kTile - 1); j <= min(g.cellsZ, (tileJ + 1) * kTile); ++j)
-            jumps = jumps || jumpsAround(g, i, j);
+    for (int n = 0; n < kNodesAbout; ++n) jumps = jumps || jumpsAtNth(g, tileI, tileJ, n);
     return jumps;
 }

@@ -108,6 +108,9 @@ inline
 // The most unknowns of the coarsest level that a workgroup takes, with the empty ones behind them.
 const uint kMostShellUnknowns = 1024u;
 
+// Numbers of the columns of its factor that a workgroup keeps together: at least two columns, whose length is below the above.
+const uint kShellTogether = 2048u;
+
 #ifdef __cplusplus
 } // namespace palp::shared
 #endif

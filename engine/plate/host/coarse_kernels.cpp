@@ -95,7 +95,7 @@ void factorOf(const HostDispatch& d)
         for (int v = 0; v < C::kVectors; ++v) sums[v] = C::load(column + v * C::kLanes);
         C::template subtract<1>(sums, column, reach, min(n, reach));
         const Real pivot   = sums[0][0];
-        const Real inverse = pivot > least * entries[0] ? Real(1) / sqrt(pivot) : Real(0);
+        const Real inverse = pivot > least * entries[0] ? inverseRoot(pivot) : Real(0);
         if (!(pivot > doubtful * entries[0])) ++lost;
         for (int v = 0; v < C::kVectors; ++v) C::store(column + v * C::kLanes, sums[v] * inverse);
         for (int e = 0; e <= reach; ++e) result[n * slots + e] = column[e];
@@ -224,7 +224,7 @@ void coarseInvertOf(const HostDispatch& d)
 {
     const PlateLevel& g        = pushed<LevelPush>(d).level;
     const auto*       factor   = bound<const Real>(d, 0);
-    auto*             inverse  = bound<float>(d, 1);
+    auto*             inverse  = bound<Real>(d, 1);
     const int         unknowns = int(nodesOf(g));
     Sides<float>      sides;
 
@@ -236,12 +236,7 @@ void coarseInvertOf(const HostDispatch& d)
             if (nodeOf(n) == unit && !sides.isHeld(g, columnOf(g, n), rowOf(g, n))) right[n] = Real(1);
         forward(factor, halfBand(g), unknowns, right);
         backward(factor, halfBand(g), unknowns, right);
-        for (int n = 0; n < unknowns; ++n) {
-            float*      pair = inverse + 2 * (std::ptrdiff_t(unit) * unknowns + nodeOf(n));
-            const float high = float(right[n]);
-            pair[0]          = high;
-            pair[1]          = float(right[n] - Real(high));
-        }
+        for (int n = 0; n < unknowns; ++n) inverse[std::ptrdiff_t(unit) * unknowns + nodeOf(n)] = right[n];
     }
 }
 

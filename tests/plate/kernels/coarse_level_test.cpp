@@ -175,7 +175,7 @@ TEST_F(CoarseLevelTest, TheAnswerIsThatOfADenseCholeskyInDoubles)
     });
 }
 
-TEST_F(CoarseLevelTest, TheInverseIsTheAnswersToUnitForcesWithTwiceTheDigits)
+TEST_F(CoarseLevelTest, TheInverseIsTheAnswersToUnitForcesWithAllDigits)
 {
     inEachPrecision([](auto real) {
         using Real = decltype(real);
@@ -187,19 +187,16 @@ TEST_F(CoarseLevelTest, TheInverseIsTheAnswersToUnitForcesWithTwiceTheDigits)
                 const std::size_t       nodes = nodesOf(level.g);
                 const std::vector<Real> factor =
                     host::factored(level.g, host::assembled<Real>(level.g, level.rigidity));
-                std::vector<float> words(2 * nodes * nodes);
-                dispatchTwice(invert, {in(factor), out(words)}, shared::LevelPush{level.g},
+                std::vector<Real> inverse(nodes * nodes);
+                dispatchTwice(invert, {in(factor), out(inverse)}, shared::LevelPush{level.g},
                               {1, 1, std::uint32_t(nodes)});
 
-                std::vector<float> units(nodes * nodes, 0.0F), high;
+                std::vector<float> units(nodes * nodes, 0.0F);
                 for (std::size_t n = 0; n < nodes; ++n) units[n * nodes + n] = 1;
-                for (std::size_t n = 0; n < words.size(); n += 2) high.push_back(words[n]);
-                const auto expected = host::coarseSolved(level.g, factor, units);
-                EXPECT_TRUE(agree(high, expected, sizesOf(expected), kFactorRounding));
-                if (sizeof(Real) == sizeof(float)) {
-                    for (std::size_t n = 1; n < words.size(); n += 2) ASSERT_EQ(words[n], 0) << "floats have no more";
-                    continue;
-                }
+                const std::vector<float> rounded(inverse.begin(), inverse.end());
+                const auto               expected = host::coarseSolved(level.g, factor, units);
+                EXPECT_TRUE(agree(rounded, expected, sizesOf(expected), kFactorRounding));
+                if (sizeof(Real) == sizeof(float)) continue;
                 // A unit of force is balanced by the whole numbers as by doubles; by their upper parts as by floats.
                 const Eigen::MatrixXd A     = denseMatrix(level);
                 double                whole = 0, upper = 0;
@@ -208,8 +205,8 @@ TEST_F(CoarseLevelTest, TheInverseIsTheAnswersToUnitForcesWithTwiceTheDigits)
                     Eigen::VectorXd both(A.rows()), above(A.rows()),
                         unit = Eigen::VectorXd::Unit(A.rows(), Eigen::Index(n));
                     for (std::size_t m = 0; m < nodes; ++m) {
-                        above[Eigen::Index(m)] = double(words[2 * (n * nodes + m)]);
-                        both[Eigen::Index(m)]  = above[Eigen::Index(m)] + double(words[2 * (n * nodes + m) + 1]);
+                        above[Eigen::Index(m)] = double(rounded[n * nodes + m]);
+                        both[Eigen::Index(m)]  = double(inverse[n * nodes + m]);
                     }
                     whole = std::max(whole, (A * both - unit).cwiseAbs().maxCoeff());
                     upper = std::max(upper, (A * above - unit).cwiseAbs().maxCoeff());
@@ -250,7 +247,7 @@ TEST_F(CoarseLevelTest, AFactorIsFiniteWhateverRoundingLeavesOfThePivots)
             holdsSome = holdsSome || L[n * std::size_t(shared::halfBand(level.g) + 1)] == 0;
             work += double(w[n]) * double(force[n]);
         }
-        EXPECT_TRUE(holdsSome) << "else this test shows nothing";
+        EXPECT_TRUE(holdsSome || !context().bitExact()) << "else this test shows nothing";
         EXPECT_GT(work, 0) << "conjugate gradients need a positive preconditioner";
     }
 }

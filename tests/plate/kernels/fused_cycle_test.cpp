@@ -2,7 +2,6 @@
 #include <cmath>
 
 #include "compute_shaders/shared/cg_state.h"
-#include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/region_layout.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/plate/multigrid/detail/plate_tail.h"
@@ -56,43 +55,66 @@ struct Levels {
         return both;
     }
 
-    /// The cycle from level l down, pass by pass; `inverse` of the coarsest level column after column.
-    [[nodiscard]] std::vector<float> cycle(std::size_t l, const std::vector<float>& force,
-                                           const std::vector<shared::FloatPair>& inverse, int sweeps) const
+    /// The coarsest level's answer, in the order of plate_tail.glsl: as many parts as a workgroup has invocations for, each
+    /// in four sums.
+    template <class Real>
+    [[nodiscard]] std::vector<float> coarsest(const std::vector<float>& force, const std::vector<Real>& inverse,
+                                              std::size_t lanes) const
     {
-        const RoughLevel&  level = levels[l];
-        const std::size_t  nodes = nodesOf(level.g);
-        std::vector<float> w(force.size(), 0.0F);
-        if (l + 1 == levels.size()) {
-            for (std::size_t n = 0; n < w.size(); ++n) {
-                shared::FloatPair total{0, 0};
-                for (std::size_t m = 0; m < nodes; ++m)
-                    total = shared::plusProduct(total, inverse[m * nodes + n % nodes], force[n - n % nodes + m]);
-                w[n] = total.high;
+        const std::size_t  nodes = nodesOf(levels.back().g);
+        const std::size_t  room  = levels.size() > 1 ? nodesOf(levels.front().g) / (2 * nodes) : 0;
+        const std::size_t  parts = std::max<std::size_t>(1, std::min(lanes / nodes, 1 + room));
+        const std::size_t  share = (nodes + parts - 1) / parts;
+        std::vector<float> w(force.size());
+        for (std::size_t n = 0; n < w.size(); ++n) {
+            const std::size_t row = n % nodes;
+            const auto        of  = [&](std::size_t m) { return inverse[m * nodes + row] * Real(force[n - row + m]); };
+            Real              total{};
+            for (std::size_t part = 0; part < parts; ++part) {
+                const std::size_t   end = std::min(nodes, (part + 1) * share);
+                std::size_t         m   = part * share;
+                std::array<Real, 4> sums{};
+                for (; m + 4 <= end; m += 4)
+                    for (std::size_t k = 0; k < 4; ++k) sums[k] += of(m + k);
+                for (; m < end; ++m) sums[0] += of(m);
+                const Real  sum  = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+                const float high = float(sum);
+                total += part == 0 ? sum : Real(high) + Real(float(sum - Real(high)));
             }
-            return w;
+            w[n] = float(total);
         }
+        return w;
+    }
+
+    /// The cycle from level l down, pass by pass; `inverse` of the coarsest level column after column.
+    template <class Real>
+    [[nodiscard]] std::vector<float> cycle(std::size_t l, const std::vector<float>& force,
+                                           const std::vector<Real>& inverse, int sweeps, std::size_t lanes) const
+    {
+        const RoughLevel& level = levels[l];
+        if (l + 1 == levels.size()) return coarsest(force, inverse, lanes);
+        std::vector<float> w(force.size(), 0.0F);
         w                     = swept(level, w, force, 0, sweeps);
         const LevelPair both  = pair(l);
         const auto      left  = host::residual(level.g, level.rigidity, force, w);
-        const auto      below = cycle(l + 1, host::restricted(both, left), inverse, sweeps);
+        const auto      below = cycle(l + 1, host::restricted(both, left), inverse, sweeps, lanes);
         return swept(level, sum(w, host::interpolated(both, below)), force, 1, sweeps);
     }
 
     /// Nested iteration for one load of a level, pass by pass, to its answer after so many steps.
     /// \param lanes  of the workgroup, which add a dot product
+    template <class Real>
     [[nodiscard]] std::vector<float> nested(std::size_t top, const std::vector<float>& load,
-                                            const std::vector<shared::FloatPair>& inverse, int steps,
-                                            std::size_t lanes) const
+                                            const std::vector<Real>& inverse, int steps, std::size_t lanes) const
     {
-        if (top + 1 == levels.size()) return cycle(top, load, inverse, shared::kNestedSweeps);
+        if (top + 1 == levels.size()) return coarsest(load, inverse, lanes);
         const RoughLevel&  level = levels[top];
         std::vector<float> x =
             host::interpolated(pair(top), nested(top + 1, host::restricted(pair(top), load), inverse, 1, lanes));
         std::vector<float> r      = host::residual(level.g, level.rigidity, load, x), p(x.size(), 0.0F);
         float              lastRz = 0;
         for (int step = 0; step < steps; ++step) {
-            const auto  z    = cycle(top, r, inverse, shared::kNestedSweeps);
+            const auto  z    = cycle(top, r, inverse, shared::kNestedSweeps, lanes);
             const float rz   = dotOf(r, z, lanes);
             const float beta = step == 0 ? 0 : rz / lastRz;
             for (std::size_t n = 0; n < z.size(); ++n) p[n] = z[n] + beta * p[n];
@@ -130,15 +152,6 @@ std::pair<std::vector<float>, std::vector<float>> fieldsOf(const Levels& levels,
         std::ranges::copy(host::inverseDivisor(level.g, level.rigidity), divisor.begin() + tail.levels[l].field);
     }
     return {rigidity, divisor};
-}
-
-/// Numbers with 48 digits.
-std::vector<shared::FloatPair> roughPairs(std::size_t count, unsigned seed)
-{
-    const auto                     high = roughValues<float>(count, seed), low = roughValues<float>(count, seed + 1);
-    std::vector<shared::FloatPair> pairs;
-    for (std::size_t n = 0; n < count; ++n) pairs.push_back({high[n], high[n] * low[n] * 1e-8F});
-    return pairs;
 }
 
 constexpr int kFinestSweeps = 2; ///< before and after each correction on the finest level
@@ -328,7 +341,11 @@ TEST_F(FusedCycleTest, TheWayUpAims)
                               out(partials), inOut(tickets), inOut(state)},
                              shared::UpPush{level.g, pair.coarse, begins}, groups);
                 EXPECT_TRUE(agree(measured, z, sizesOf(z), kCycleRounding));
-                EXPECT_TRUE(agree(state, expected, std::vector<double>(state.size(), double(nodes)), kCycleRounding));
+                // The deflection of which the products are is of floats, in either precision.
+                constexpr double kOfFloats =
+                    std::numeric_limits<float>::epsilon() / std::numeric_limits<Real>::epsilon();
+                EXPECT_TRUE(agree(state, expected, std::vector<double>(state.size(), kOfFloats * double(nodes)),
+                                  kCycleRounding));
                 EXPECT_EQ(tickets, std::vector<std::uint32_t>(kLoads + 2, 0)) << "ready for the next dispatch";
             }
     });
@@ -404,31 +421,35 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
                                  roughPlate(64, 33, {supported, supported, free, clamped}, 1, 1.9),
                                  roughPlate(9, 12, {free, clamped, free, free})}; // one
     if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
-    for (const compute::Workgroup shape : shapesOfTail())
-        for (const int sweeps : sweepCounts()) {
-            const compute::Kernel kernel = kernelOf(kernels::tail(), shape, sweeps);
-            for (const Plate& plate : all) {
-                const Levels     levels(plate);
-                const TailLayout tail = tailLayout(levels.grids);
-                ASSERT_EQ(tail.first, 0u);
-                const auto [rigidity, divisor] = fieldsOf(levels, tail);
-                const std::size_t coarsest     = nodesOf(levels.levels.back().g);
-                const auto        inverse      = roughPairs(coarsest * coarsest, 35);
-                for (std::size_t first = 0; first < levels.levels.size(); ++first) {
-                    SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", sweeps: " + std::to_string(sweeps) +
-                                 ", from level " + std::to_string(first));
-                    const auto         force    = roughValues<float>(kLoads * nodesOf(levels.levels[first].g), 36);
-                    const auto         expected = levels.cycle(first, force, inverse, sweeps);
-                    std::vector<float> measured(expected.size()), aside(kLoads * tail.nodes, 0.0F);
-                    dispatchTwice(kernel,
-                                  {in(tail.levels), in(rigidity), in(divisor), in(tail.tablesX), in(tail.tablesZ),
-                                   in(inverse), in(force), inOut(aside), out(measured)},
-                                  shared::TailPush{std::uint32_t(first), std::uint32_t(tail.levels.size()), tail.nodes},
-                                  {1, 1, kLoads});
-                    EXPECT_TRUE(agree(measured, expected, sizesOf(expected), kCycleRounding));
+    inEachPrecision([&](auto number) {
+        using Real = decltype(number);
+        for (const compute::Workgroup shape : shapesOfTail())
+            for (const int sweeps : sweepCounts()) {
+                const compute::Kernel kernel = kernelOf(kernels::tail<Real>(), shape, sweeps);
+                for (const Plate& plate : all) {
+                    const Levels     levels(plate);
+                    const TailLayout tail = tailLayout(levels.grids);
+                    ASSERT_EQ(tail.first, 0u);
+                    const auto [rigidity, divisor] = fieldsOf(levels, tail);
+                    const std::size_t coarsest     = nodesOf(levels.levels.back().g);
+                    const auto        inverse      = roughValues<Real>(coarsest * coarsest, 35);
+                    for (std::size_t first = 0; first < levels.levels.size(); ++first) {
+                        SCOPED_TRACE(describe(plate) + " by " + describe(shape) +
+                                     ", sweeps: " + std::to_string(sweeps) + ", from level " + std::to_string(first));
+                        const auto         force    = roughValues<float>(kLoads * nodesOf(levels.levels[first].g), 36);
+                        const auto         expected = levels.cycle(first, force, inverse, sweeps, shape.x);
+                        std::vector<float> measured(expected.size()), aside(kLoads * tail.nodes, 0.0F);
+                        dispatchTwice(
+                            kernel,
+                            {in(tail.levels), in(rigidity), in(divisor), in(tail.tablesX), in(tail.tablesZ),
+                             in(inverse), in(force), inOut(aside), out(measured)},
+                            shared::TailPush{std::uint32_t(first), std::uint32_t(tail.levels.size()), tail.nodes},
+                            {1, 1, kLoads});
+                        EXPECT_TRUE(agree(measured, expected, sizesOf(expected), kCycleRounding));
+                    }
                 }
             }
-        }
+    });
 }
 
 TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
@@ -437,45 +458,48 @@ TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
     if (isSlow()) GTEST_SKIP() << "with every access checked this kernel takes minutes to compile";
     if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
     using enum Edge;
-    for (const compute::Workgroup shape : shapesOfTail()) {
-        const compute::Kernel kernel(context(), kernels::nested(), shape);
-        for (const Plate& plate : {onRoughBed(roughPlate(40, 26, {clamped, free, supported, clamped})), // two levels
-                                   roughPlate(64, 64, {clamped, clamped, clamped, clamped}),            // three
-                                   roughPlate(64, 33, {supported, supported, free, clamped}, 1, 1.9)}) {
-            const Levels     levels(plate);
-            const TailLayout tail = tailLayout(levels.grids);
-            ASSERT_EQ(tail.first, 0u);
-            const auto [rigidity, divisor]          = fieldsOf(levels, tail);
-            const std::size_t              coarsest = nodesOf(levels.levels.back().g);
-            std::vector<shared::FloatPair> inverse  = roughPairs(coarsest * coarsest, 35);
-            for (std::size_t n = 0; n < inverse.size(); ++n)
-                inverse[n] =
-                    n % (coarsest + 1) == 0 ? shared::FloatPair{1, 0} : shared::FloatPair{inverse[n].high / 64, 0};
-            for (std::size_t top = 0; top < levels.levels.size(); ++top)
-                for (const int steps : {1, 2}) {
-                    SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", from level " + std::to_string(top) +
-                                 ", steps: " + std::to_string(steps));
-                    const std::size_t  nodes = nodesOf(levels.levels[top].g);
-                    const auto         load  = roughValues<float>(kLoads * nodes, 37);
-                    std::vector<float> expected;
-                    for (auto from = load.begin(); from != load.end(); from += std::ptrdiff_t(nodes)) {
-                        const auto one =
-                            levels.nested(top, {from, from + std::ptrdiff_t(nodes)}, inverse, steps, shape.x);
-                        expected.insert(expected.end(), one.begin(), one.end());
+    inEachPrecision([&](auto number) {
+        using Real = decltype(number);
+        for (const compute::Workgroup shape : shapesOfTail()) {
+            const compute::Kernel kernel(context(), kernels::nested<Real>(), shape);
+            for (const Plate& plate :
+                 {onRoughBed(roughPlate(40, 26, {clamped, free, supported, clamped})), // two levels
+                  roughPlate(64, 64, {clamped, clamped, clamped, clamped}),            // three
+                  roughPlate(64, 33, {supported, supported, free, clamped}, 1, 1.9)}) {
+                const Levels     levels(plate);
+                const TailLayout tail = tailLayout(levels.grids);
+                ASSERT_EQ(tail.first, 0u);
+                const auto [rigidity, divisor] = fieldsOf(levels, tail);
+                const std::size_t coarsest     = nodesOf(levels.levels.back().g);
+                std::vector<Real> inverse      = roughValues<Real>(coarsest * coarsest, 35);
+                for (std::size_t n = 0; n < inverse.size(); ++n)
+                    inverse[n] = n % (coarsest + 1) == 0 ? 1 : inverse[n] / 64;
+                for (std::size_t top = 0; top < levels.levels.size(); ++top)
+                    for (const int steps : {1, 2}) {
+                        SCOPED_TRACE(describe(plate) + " by " + describe(shape) + ", from level " +
+                                     std::to_string(top) + ", steps: " + std::to_string(steps));
+                        const std::size_t  nodes = nodesOf(levels.levels[top].g);
+                        const auto         load  = roughValues<float>(kLoads * nodes, 37);
+                        std::vector<float> expected;
+                        for (auto from = load.begin(); from != load.end(); from += std::ptrdiff_t(nodes)) {
+                            const auto one =
+                                levels.nested(top, {from, from + std::ptrdiff_t(nodes)}, inverse, steps, shape.x);
+                            expected.insert(expected.end(), one.begin(), one.end());
+                        }
+                        std::vector<float>              measured(expected.size());
+                        std::vector<std::vector<float>> fields(5, std::vector<float>(kLoads * tail.nodes, 0.0F));
+                        dispatchTwice(kernel,
+                                      {in(tail.levels), in(rigidity), in(divisor), in(tail.tablesX), in(tail.tablesZ),
+                                       in(inverse), in(load), inOut(fields[0]), out(measured), inOut(fields[1]),
+                                       inOut(fields[2]), inOut(fields[3]), inOut(fields[4])},
+                                      shared::NestedPush{std::uint32_t(top), std::uint32_t(tail.levels.size()),
+                                                         tail.nodes, std::uint32_t(steps)},
+                                      {1, 1, kLoads});
+                        EXPECT_TRUE(agree(measured, expected, sizesOf(expected), kCycleRounding));
                     }
-                    std::vector<float>              measured(expected.size());
-                    std::vector<std::vector<float>> fields(5, std::vector<float>(kLoads * tail.nodes, 0.0F));
-                    dispatchTwice(kernel,
-                                  {in(tail.levels), in(rigidity), in(divisor), in(tail.tablesX), in(tail.tablesZ),
-                                   in(inverse), in(load), inOut(fields[0]), out(measured), inOut(fields[1]),
-                                   inOut(fields[2]), inOut(fields[3]), inOut(fields[4])},
-                                  shared::NestedPush{std::uint32_t(top), std::uint32_t(tail.levels.size()), tail.nodes,
-                                                     std::uint32_t(steps)},
-                                  {1, 1, kLoads});
-                    EXPECT_TRUE(agree(measured, expected, sizesOf(expected), kCycleRounding));
-                }
+            }
         }
-    }
+    });
 }
 
 TEST(TailLayout, TakesTheLevelsOfUpTo64CellsAndFitsTheKernel)

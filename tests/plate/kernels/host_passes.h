@@ -172,7 +172,7 @@ std::vector<Real> factored(const PlateLevel& g, const std::vector<Real>& matrix)
     std::vector<Real> band = matrix, factor(band.size());
     for (std::size_t n = 0; n < unknowns; ++n) {
         const Real  pivot   = band[n * slots];
-        const Real  inverse = pivot > leastPivot<Real>() * matrix[n * slots] ? Real(1) / sqrt(pivot) : Real(0);
+        const Real  inverse = pivot > leastPivot<Real>() * matrix[n * slots] ? shared::inverseRoot(pivot) : Real(0);
         Real* const column  = factor.data() + n * slots;
         for (std::size_t d = 0; d < slots; ++d) column[d] = band[n * slots + d] * inverse;
         for (std::size_t d = 1; d < slots && n + d < unknowns; ++d)

@@ -5,7 +5,6 @@
 
 #include <gtest/gtest.h>
 
-#include "compute_shaders/shared/float_pair.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/plate/kernels/host_passes.h"
 
@@ -387,34 +386,15 @@ TEST(SharedTransferTest, AConstantRigidityStaysAsItIs)
         }
 }
 
-/// Terms that cancel but for a millionth: floats keep one or two digits of such a sum, pairs as many as doubles.
-TEST(FloatPairTest, ASumOfProductsKeepsWhatFloatsLose)
+TEST(CoarseBandTest, TheInverseRootHasAllDigitsOfADouble)
 {
-    const auto high = roughValues<float>(200, 41), low = roughValues<float>(200, 42), b = roughValues<float>(200, 43);
-    shared::FloatPair sum{0, 0};
-    double            expected = 0, sizes = 0;
-    for (int sign : {1, -1})
-        for (std::size_t n = 0; n < high.size(); ++n) {
-            const float             kept = n % 50 == 0 && sign < 0 ? b[n] * 0.999999F : b[n];
-            const shared::FloatPair a{float(sign) * 1e6F * high[n], float(sign) * 0.01F * low[n]};
-            sum = shared::plusProduct(sum, a, kept);
-            expected += (double(a.high) + double(a.low)) * double(kept);
-            sizes += std::abs(double(a.high) * double(kept));
-        }
-    EXPECT_LT(std::abs(expected), 1e-6 * sizes) << "else this test shows nothing";
-    EXPECT_NEAR(double(sum.high) + double(sum.low), expected, 400 * std::ldexp(sizes, -46))
-        << "a rounding of 2^-47 or less for each sum and product";
-    EXPECT_EQ(sum.high + sum.low, sum.high);
-}
-
-TEST(FloatPairTest, WhatAProductLosesIsExact)
-{
-    const auto a = roughValues<float>(500, 44), b = roughValues<float>(500, 45);
-    for (std::size_t n = 0; n < a.size(); ++n) {
-        const float product = a[n] * b[n];
-        EXPECT_EQ(double(product) + double(shared::lostByProduct(a[n], b[n], product)), double(a[n]) * double(b[n]))
-            << "two floats hold the 48 digits of a product";
+    double most = 0;
+    for (double x = 1e-30; x < 1e30; x *= 1.0137) {
+        const double exact = double(1 / std::sqrt(static_cast<long double>(x)));
+        most               = std::max(most, std::abs(shared::inverseRoot(x) / exact - 1));
     }
+    EXPECT_LT(most, std::ldexp(1, -51)) << "the last of its five roundings, and that of the quotient here";
+    EXPECT_EQ(shared::inverseRoot(4.0), 0.5);
 }
 
 TEST(SharedTransferTest, ACoarsenedShapeOfTheFoundationIsAWeightedMean)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "compute_shaders/shared/tail_level.h"
@@ -23,9 +24,12 @@ struct Shapes {
     compute::Workgroup reduce;  ///< at most kMostInvocations of cg_scalars.comp
     compute::Workgroup tail;    ///< the one workgroup of plate_tail.comp
     compute::Workgroup entries; ///< of plate_divisor.comp: nodes of a row, each with its 9 entries
+    compute::Workgroup factor;  ///< the one workgroup of prepare_end.comp that factors
+    compute::Workgroup region;  ///< of plate_region.glsl: a power of two
     compute::Workgroup jumpTile{shared::kTile, shared::kTile, 1};
-    compute::Workgroup region{256, 1, 1}; ///< of plate_region.glsl
 };
+
+constexpr std::uint32_t kFewestOfRegions = 256; ///< invocations; each keeps up to five nodes
 
 bool isHardware(const compute::Context& context)
 {
@@ -35,9 +39,9 @@ bool isHardware(const compute::Context& context)
 
 Shapes shapesFor(const compute::Context& context)
 {
-    const compute::Workgroup tail{std::min(context.limits().invocations, 1024U), 1, 1};
-    if (isHardware(context)) return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, tail, {28, 1, 9}};
-    return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, tail, {8, 1, 9}};
+    const compute::Workgroup most{std::bit_floor(std::min(context.limits().invocations, 1024U)), 1, 1};
+    if (isHardware(context)) return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, most, {28, 1, 9}, most, most};
+    return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, most, {8, 1, 9}, {64, 1, 1}, {kFewestOfRegions, 1, 1}};
 }
 
 /// Chooses the smoother. Where an operator row by row costs the same for all nodes as for half of them, half sweeps are
@@ -67,7 +71,7 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
     constexpr std::uint32_t kBuffers = 14; // of the kernel that takes most
     const compute::Limits   limits   = context.limits();
     const bool              fits     = limits.sharedMemory >= sizeof(float) * (shared::kTailPool + shared::kTailSums) &&
-                      limits.buffers >= kBuffers && limits.invocations >= Shapes{}.region.x;
+                      limits.buffers >= kBuffers && limits.invocations >= kFewestOfRegions;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
     return schedule == Schedule::fused ||
            (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
@@ -82,20 +86,23 @@ PlateKernels::All::ExactRims rimKernels(compute::Context& context, const HostKer
             kernel("rim_start", 3, doubles ? host.rimStart_f64 : host.rimStart_f32)};
 }
 
+/// A kernel that has the number of sweeps as its constant, for one and for two of them.
+std::array<compute::Kernel, 2> bySweeps(compute::Context& context, const compute::KernelCode& code,
+                                        compute::Workgroup shape)
+{
+    const std::uint32_t one = 1, two = 2;
+    return {compute::Kernel(context, code, shape, {&one, 1}), compute::Kernel(context, code, shape, {&two, 1})};
+}
+
 PlateKernels::All::Fused fusedKernels(compute::Context& context, const Shapes& shapes, bool doubles)
 {
-    const auto bySweeps = [&](const compute::KernelCode& code, compute::Workgroup shape) {
-        const std::uint32_t one = 1, two = 2;
-        return std::array{compute::Kernel(context, code, shape, {&one, 1}),
-                          compute::Kernel(context, code, shape, {&two, 1})};
-    };
     return {
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape)
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)                                               \
-    .name = bySweeps(kernels::name(), shapes.shape),
+    .name = bySweeps(context, kernels::name(), shapes.shape),
 #define PALPATE_FUSED_SWEEPS_REALS(name, spirv, source, define, Push, buffers, shape)                                  \
-    .name = bySweeps(doubles ? kernels::name<double>() : kernels::name<float>(), shapes.shape),
+    .name = bySweeps(context, doubles ? kernels::name<double>() : kernels::name<float>(), shapes.shape),
 #define PALPATE_FUSED_FLOATS(name, spirv, source, define, Push, buffers, shape)                                        \
     .name = compute::Kernel(context, kernels::name(), shapes.shape),
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)                                         \
@@ -140,8 +147,11 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
     if (chosen(smoother, schedule, context) == Smoother::exactRims) all_->rims.emplace(rimKernels(context, host, f64));
     if (!isFused(context, schedule, all_->smoothing.by)) return;
     all_->fused.emplace(fusedKernels(context, shapes, f64));
-    if (coarse && !f64)
-        all_->fused->prepareEnd = compute::Kernel(context, kernels::prepareEnd<double>(), shapes.reduce);
+    if (coarse && !f64) {
+        all_->fused->prepareEnd = compute::Kernel(context, kernels::prepareEnd<double>(), shapes.factor);
+        all_->fused->tail       = bySweeps(context, kernels::tail<double>(), shapes.tail);
+        all_->fused->nested     = compute::Kernel(context, kernels::nested<double>(), shapes.tail);
+    }
 }
 
 PlateKernels::~PlateKernels()                                  = default;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "compute_shaders/shared/float_pair.h"
 #include "compute_shaders/shared/plate_push.h"
 #include "engine/compute/context.h"
 #include "engine/plate/multigrid/detail/rigidity_layout.h"
@@ -70,7 +69,7 @@ PlateTail::PlateTail(compute::Context& context, const PlateKernels::All& kernels
       tableX_(context, "tables x of the tail", bytesOf(layout_.tablesX), Intent::processor),
       tableZ_(context, "tables z of the tail", bytesOf(layout_.tablesZ), Intent::processor),
       inverse_(context, "inverse of the coarsest level",
-               sizeof(shared::FloatPair) * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::processor),
+               kernels.coarseBytes() * std::size_t(coarsestNodes_) * coarsestNodes_, Intent::processor),
       aside_(field(context, "deflections put aside")), loadOf_(field(context, "loads of the tail")),
       answer_(field(context, "answers of the tail")), left_(field(context, "residuals of the tail")),
       direction_(field(context, "directions of the tail"))

@@ -48,7 +48,7 @@ bool ShellKernels::suit(const compute::Context& context) noexcept
 {
     const bool isVulkan = context.processor().kind != compute::ProcessorKind::host;
     return isVulkan && context.processor().float64 && context.limits().invocations >= shapesFor(context).reduce.x &&
-           context.limits().sharedMemory >= sizeof(double) * (shared::kMostShellUnknowns + shared::kShellLanes);
+           context.limits().sharedMemory >= sizeof(double) * (shared::kMostShellUnknowns + shared::kShellTogether + shared::kShellLanes);
 }
 
 ShellKernels::ShellKernels(compute::Context& context)
