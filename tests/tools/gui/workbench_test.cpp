@@ -99,9 +99,9 @@ protected:
     WorkbenchTest() : before_(std::filesystem::current_path())
     {
         std::filesystem::current_path(folder_.path()); // where pictures and recordings go
-        settings_.what   = "sample:sheet";
-        settings_.values = {{"points", "2000"}, {"cells", "32"}, {"solver", "host"}};
-        settings_.open   = [this](const std::string& what, const SceneValues& values) { return sceneOf(what, values); };
+        settings_.what       = "sample:sheet";
+        settings_.values     = {{"points", "2000"}, {"cells", "32"}, {"solver", "host"}};
+        settings_.open       = [](const std::string& what, const SceneValues& values) { return sceneOf(what, values); };
         settings_.complained = [this](const std::string& sentence) { complaints_ += sentence + "\n"; };
         input_.size          = kSize;
         input_.pointer       = glm::dvec2(kSize) / 2.0;
@@ -381,7 +381,7 @@ TEST_F(WorkbenchTest, PaintThatNobodySavedIsSavedWhenTheWindowCloses)
 TEST_F(WorkbenchTest, FilesThatCannotBeOpenedAreOneSentenceAndTheObjectStays)
 {
     takeHand();
-    settings_.open = [this](const std::string& what, const SceneValues& values) {
+    settings_.open = [](const std::string& what, const SceneValues& values) {
         return what.starts_with("sample:") ? sceneOf(what, values) : throw Error(what + ": expected a cloud");
     };
     wait("the object", [this] { return screen_.points == 2000; });
