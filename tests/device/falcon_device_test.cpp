@@ -255,7 +255,7 @@ TEST(FalconDevice, NoAnswerStaysBehindAfterRepeatedOnes)
                 return glm::dvec3(0.02 * std::sin(50 * clock), 0, 0); // up to 1 m/s
             },
             settings);
-        const auto run = [&](double seconds) {
+        const auto run = [&, isHurried = isHurried](double seconds) {
             double worst = 0;
             for (const double until = bench.emulator.now() + seconds; bench.emulator.now() < until;) {
                 bench.tick();

@@ -173,7 +173,7 @@ TEST(PressDeep, MeetsTheSineSeriesOfSupportedPlatesAndDomesWithSecondOrder)
     for (const auto& [curvature, depth] : {Of{0, 1e-3}, Of{0.3 / kRadius, -1e-3}, Of{0.3 / kRadius, 0.3e-3},
                                            Of{1 / kRadius, -1e-3}, Of{1 / kRadius, 0.2e-3}}) {
         const SineSeries series(curvature);
-        const auto       errorOf = [&](int cells) {
+        const auto       errorOf = [&, curvature = curvature, depth = depth](int cells) {
             const Shell shell = sheet(cells, curvature, curvature, Edge::supported);
             const auto  state =
                 pressDeep(shell, uniformLoad(shell.bending.grid, 1 / (kSize * kSize)), std::array{depth / 2, depth})

@@ -414,11 +414,12 @@ TEST(SharedTransferTest, ACoarsenedShapeOfTheFoundationIsAWeightedMean)
 
         const int    stepX = 12 / cellsX, stepZ = 10 / cellsZ;
         const double bent = (stepX == 2 ? 0.05 : 0) - (stepZ == 2 ? 0.015 : 0); // a quarter of the second differences
-        host::forEachNode(pair.coarse, 1, [&](int i, int j, std::size_t n, std::size_t) {
-            if (i == 0 || j == 0 || i == cellsX || j == cellsZ) return; // mirrored there
-            EXPECT_NEAR(double(coarse[nodesOf(pair.coarse) + n]), shape(stepX * i, stepZ * j) + bent, 2e-6)
-                << i << ", " << j << "; floats of about 10 round";
-        });
+        host::forEachNode(
+            pair.coarse, 1, [&, cellsX = cellsX, cellsZ = cellsZ](int i, int j, std::size_t n, std::size_t) {
+                if (i == 0 || j == 0 || i == cellsX || j == cellsZ) return; // mirrored there
+                EXPECT_NEAR(double(coarse[nodesOf(pair.coarse) + n]), shape(stepX * i, stepZ * j) + bent, 2e-6)
+                    << i << ", " << j << "; floats of about 10 round";
+            });
     }
 }
 

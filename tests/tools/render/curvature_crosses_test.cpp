@@ -69,11 +69,11 @@ TEST(CurvatureCrosses, AStrokeLiesAlongTheBendOfTheSurface)
 {
     // Half axes 60, 45 and 35 mm: at the top 35/45^2 along y is a larger curvature than 35/60^2 along x.
     const auto [patch, crosses] = crossed("ellipsoid");
-    const auto nearest =
+    const glm::dvec3 top        = patch.contact.point;
+    const auto       nearest =
         std::min_element(crosses.bulging.begin(), crosses.bulging.end(), [&](const auto& a, const auto& b) {
             const auto key = [&](const ViewSegment& s) {
-                return glm::distance((s.from + s.to) * 0.5, patch.contact.point) -
-                       0.1 * lengthOf(s); // the longer one of two
+                return glm::distance((s.from + s.to) * 0.5, top) - 0.1 * lengthOf(s); // the longer one of two
             };
             return key(a) < key(b);
         });
