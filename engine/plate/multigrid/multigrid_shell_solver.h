@@ -14,6 +14,13 @@ namespace compute {
 class Context;
 }
 
+/// The solution of the coarsest level of shells on a processor. The answers are the same, but for rounding.
+enum class CoarsestShell {
+    automatic, ///< by the inverse on hardware, by factors in software
+    byFactors, ///< one unknown after the other, with the host's bits
+    byInverse  ///< made once per shell: all unknowns at once, with nothing to wait for
+};
+
 /// The kernels of shells for one processor of Vulkan, compiled once.
 /// \thread one at a time, together with its context
 class ShellKernels {
@@ -23,7 +30,7 @@ public:
 
     /// \pre suit(context)
     /// \throws Error if they do not compile
-    explicit ShellKernels(compute::Context& context);
+    explicit ShellKernels(compute::Context& context, CoarsestShell coarsest = CoarsestShell::automatic);
     ~ShellKernels();
     ShellKernels(ShellKernels&&) noexcept;
     ShellKernels& operator=(ShellKernels&&) noexcept;

@@ -182,6 +182,20 @@ TEST_F(ShellKernelsTest, CoarsestLevel)
                                        std::uint32_t(numbersOf(l))},
                  {1, 1, kLoads});
     expectSame(x, expected, 1e3);
+
+    std::vector<double>         inverse(places.size() * places.size());
+    const auto                  unknowns = std::uint32_t(places.size());
+    const shared::ShellBandPush push{unknowns, std::uint32_t(coarse_.halfBand()), std::uint32_t(numbersOf(l))};
+    dispatchOnce(k().invert, {in(factors), out(inverse)}, push, {1, 1, unknowns});
+    std::vector<float> product(b.size());
+    dispatchOnce(k().byInverse, {in(inverse), in(places), in(b), inOut(product)}, push, {unknowns, 1, kLoads});
+    double size = 0;
+    for (const float value : expected) size = std::max(size, std::abs(double(value)));
+    for (std::size_t n = 0; n < product.size(); ++n)
+        ASSERT_NEAR(product[n], expected[n], 1e-6 * size) << "rounded to floats, " << n;
+    for (std::uint32_t u = 0; u < unknowns; ++u)
+        for (std::uint32_t v = 0; v < u; ++v)
+            ASSERT_NEAR(inverse[u * unknowns + v], inverse[v * unknowns + u], 1e-9 * size) << u << ", " << v;
 }
 
 TEST_F(ShellKernelsTest, GradientsOfEachLoad)

@@ -90,6 +90,30 @@ TEST_F(ShellOnProcessor, SolvesForSeveralLoadsTogether)
     expectTheHosts(found, shell, loads, "six loads");
 }
 
+/// As on hardware, where it is the rule; there too after another shell has come.
+TEST_F(ShellOnProcessor, SolvesTheCoarsestLevelByItsInverseAsByItsFactors)
+{
+    using enum Edge;
+    const ShellKernels byInverse(*context_, CoarsestShell::byInverse), byFactors(*context_, CoarsestShell::byFactors);
+    const PlateGrid    grid = square(32);
+    std::vector<NodeField> loads;
+    for (int n = 0; n < 3; ++n) loads.push_back(fingertip(grid, 2e-3 * n, 1e-3 * n));
+    const Shell          first = shellOf(grid, wart(10), constant(1, 0.5, 0.2), 8);
+    MultigridShellSolver found(first, *context_, byInverse), expected(first, *context_, byFactors);
+    for (const Shell& shell : {first, shellOf(grid, disc(10), ridges(), 8),
+                               shellOf(grid, linear(10), constant(1, -1, 0.2), 12, clamped, free)}) {
+        found.setShell(shell);
+        expected.setShell(shell);
+        const auto a = found.solve(loads, 1e-6), b = expected.solve(loads, 1e-6);
+        for (std::size_t n = 0; n < loads.size(); ++n) {
+            EXPECT_TRUE(a[n].report.converged);
+            EXPECT_EQ(a[n].report.iterations, b[n].report.iterations);
+            EXPECT_LT(largestDifference(a[n].deflection, b[n].deflection), 1e-6) << "of what 1e-6 leaves";
+            EXPECT_NEAR(a[n].work / b[n].work, 1, 1e-9) << "the second order of that";
+        }
+    }
+}
+
 TEST_F(ShellOnProcessor, GoesOnWithAnotherShellAndOtherEdges)
 {
     using enum Edge;

@@ -22,14 +22,14 @@ namespace {
 
 /// Shapes of workgroups by their names in shell_passes.def, as those of plates are.
 struct Shapes {
-    compute::Workgroup tile, line, alone, reduce;
+    compute::Workgroup tile, line, alone, reduce, row;
 };
 
 Shapes shapesFor(const compute::Context& context)
 {
     if (context.processor().kind == compute::ProcessorKind::software)
-        return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}};
-    return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}};
+        return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, {8, 1, 1}};
+    return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, {64, 1, 1}};
 }
 
 ShellPassPush passOf(const ShellLayout& layout)
@@ -48,14 +48,18 @@ bool ShellKernels::suit(const compute::Context& context) noexcept
 {
     const bool isVulkan = context.processor().kind != compute::ProcessorKind::host;
     return isVulkan && context.processor().float64 && context.limits().invocations >= shapesFor(context).reduce.x &&
-           context.limits().sharedMemory >= sizeof(double) * (shared::kMostShellUnknowns + shared::kShellTogether + shared::kShellLanes);
+           context.limits().sharedMemory >=
+               sizeof(double) * (shared::kMostShellUnknowns + shared::kShellTogether + shared::kShellLanes);
 }
 
-ShellKernels::ShellKernels(compute::Context& context)
+ShellKernels::ShellKernels(compute::Context& context, CoarsestShell coarsest)
 {
     PALP_EXPECT(suit(context), "kernels of shells need Vulkan and doubles");
     const Shapes shapes = shapesFor(context);
+    using enum CoarsestShell;
+    const bool isHardware = context.processor().kind != compute::ProcessorKind::software;
     all_.reset(new All{
+        .invertsCoarsest = coarsest == byInverse || (coarsest == automatic && isHardware),
 #define PALPATE_PASS(name, spirv, source, define, Push, buffers, shape)                                                \
     .name = Kernel(context, {#spirv, spirv##_spv, buffers, int(sizeof(shared::Push)), nullptr}, shapes.shape),
 #include "compute_shaders/shared/shell_passes.def"
@@ -80,6 +84,10 @@ ProcessorShellFields::ProcessorShellFields(compute::Context& context, const Shel
       exact_(memory("exact coefficients", sizeof(double) * levels.front().exact.size())),
       factors_(memory("factors", sizeof(double) * coarse.factors().size())),
       places_(memory("places", sizeof(std::int32_t) * std::max<std::size_t>(1, coarse.places().size()))),
+      inverse_(k.invertsCoarsest && band_.unknowns > 0
+                   ? std::optional(memory("inverse of the coarsest level",
+                                          sizeof(double) * std::size_t(band_.unknowns) * band_.unknowns))
+                   : std::nullopt),
       right_(memory("right side", sizeof(double) * loads * numbers())),
       left_(memory("left", sizeof(double) * loads * numbers())),
       direction_(memory("direction", sizeof(double) * loads * numbers())),
@@ -105,6 +113,7 @@ ProcessorShellFields::ProcessorShellFields(compute::Context& context, const Shel
         send_.copy(staging_, offset, to, 0, count);
         offset += count;
     });
+    if (inverse_) send_.dispatch(k.invert, {factors_, *inverse_}, band_, {1, 1, band_.unknowns});
     send_.end();
     empty();
     record();
@@ -271,7 +280,11 @@ void ProcessorShellFields::prolongFrom(CommandList& list, std::size_t fine, cons
 
 void ProcessorShellFields::solveCoarsest(CommandList& list, const Buffer& b, const Buffer& x) const
 {
-    list.dispatch(k.coarse, {factors_, places_, b, x}, band_, {1, 1, std::uint32_t(loads_)});
+    const auto loads = std::uint32_t(loads_);
+    if (inverse_)
+        list.dispatch(k.byInverse, {*inverse_, places_, b, x}, band_, {band_.unknowns, 1, loads});
+    else
+        list.dispatch(k.coarse, {factors_, places_, b, x}, band_, {1, 1, loads});
 }
 
 /// Nested iteration, as ShellCycle::start() does it.

@@ -1,6 +1,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -16,6 +17,7 @@ namespace palp {
 
 /// The kernels of compute_shaders/shared/shell_passes.def by name, for one processor of Vulkan.
 struct ShellKernels::All {
+    bool invertsCoarsest; ///< once per shell, where waiting for one unknown after the other costs more than a product
 #define PALPATE_PASS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #include "compute_shaders/shared/shell_passes.def"
 };
@@ -111,6 +113,7 @@ private:
     shared::ShellBandPush          band_;
     std::vector<Level>             levels_;
     compute::Buffer                exact_, factors_, places_; ///< coefficients in doubles; of the coarsest level
+    std::optional<compute::Buffer> inverse_;                  ///< of the coarsest level's matrix, where it has unknowns
     compute::Buffer                right_, left_, direction_, product_, answer_; ///< of the finest level, in doubles
     compute::Buffer                rightInFloats_, leftInFloats_;
     compute::Buffer                staging_, givenRight_, givenFloats_, turns_, lengths_; ///< written by the host
