@@ -90,6 +90,25 @@ TEST_F(ShellOnProcessor, SolvesForSeveralLoadsTogether)
     expectTheHosts(found, shell, loads, "six loads");
 }
 
+/// As on the host: what several loads gain together tells that no more steps are needed.
+TEST_F(ShellOnProcessor, StopsAfterOneStepWhereAllLoadsHaveGainedEnough)
+{
+    const PlateGrid        grid  = square(64);
+    const Shell            shell = shellOf(grid, linear(3), constant(1, 1, 0), 8);
+    std::vector<NodeField> loads;
+    for (int n = 0; n < 4; ++n) loads.push_back(fingertip(grid, 2e-3 * n, 1e-3 * n));
+    const ReferenceShellSolver reference(shell);
+    const auto                 found = solved(shell, loads, 1e-2);
+    for (std::size_t n = 0; n < loads.size(); ++n) {
+        EXPECT_EQ(found[n].report.iterations, 1);
+        EXPECT_TRUE(found[n].report.converged);
+        const NodeField exact = reference.solve(loads[n]).deflection;
+        EXPECT_NEAR(found[n].work / responseOf(Footprint(loads[n]), exact).work, 1, 1e-4) << "the tolerance's square";
+        EXPECT_LT(largestDifference(found[n].deflection, exact), 1e-2);
+    }
+    EXPECT_GT(solved(shell, {loads.data(), 1}, 1e-2).front().report.iterations, 1) << "one load alone tells less";
+}
+
 /// As on hardware, where it is the rule; there too after another shell has come.
 TEST_F(ShellOnProcessor, SolvesTheCoarsestLevelByItsInverseAsByItsFactors)
 {

@@ -105,7 +105,7 @@ ProcessorShellFields::ProcessorShellFields(compute::Context& context, const Shel
       lengths_(memory("lengths", sizeof(double) * loads, Intent::upload)),
       sums_(memory("sums", sizeof(double) * kSums * loads, Intent::readback)),
       read_(memory("answer for the host", sizeof(double) * loads * numbers(), Intent::readback)), send_(context),
-      begin_(context), aim_(context), again_(context), go_(context), fetch_(context)
+      begin_(context), aim_(context), again_(context), go_(context), finish_(context), fetch_(context)
 {
     PALP_EXPECT(band_.unknowns + band_.halfBand < shared::kMostShellUnknowns, "the coarsest level is too large");
     std::size_t offset = 0;
@@ -205,6 +205,9 @@ void ProcessorShellFields::record()
 
     goAlong(go_);
     go_.end();
+
+    advance(finish_);
+    finish_.end();
 
     fetch_.copy(answer_, read_);
     fetch_.end();
@@ -310,10 +313,15 @@ void ProcessorShellFields::turnAndApply(CommandList& list, const Buffer& z) cons
     nodes(list, k.apply, {exact_, direction_, product_}, 0, passOf(levels_.front().layout));
 }
 
+void ProcessorShellFields::advance(CommandList& list) const
+{
+    vectors(list, k.advance, {answer_, left_, direction_, product_, leftInFloats_, lengths_});
+}
+
 /// A step along the direction, its work, and what the cycle makes of what is left.
 void ProcessorShellFields::goAlong(CommandList& list) const
 {
-    vectors(list, k.advance, {answer_, left_, direction_, product_, leftInFloats_, lengths_});
+    advance(list);
     dots(list, k.dots, right_, answer_, kBx);
     dots(list, k.dots, left_, answer_, kRx);
     cycle(list, 0, leftInFloats_);
@@ -364,6 +372,12 @@ ProcessorShellFields::PerLoad ProcessorShellFields::go(const PerLoad& lengths)
     std::ranges::copy(lengths, lengths_.as<double>().begin());
     context_.run(go_);
     return works();
+}
+
+void ProcessorShellFields::finish(const PerLoad& lengths)
+{
+    std::ranges::copy(lengths, lengths_.as<double>().begin());
+    context_.run(finish_);
 }
 
 void ProcessorShellFields::turn(const PerLoad& betas)

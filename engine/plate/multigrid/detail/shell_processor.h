@@ -51,6 +51,7 @@ public:
     PerLoad               useDirection();
     void                  restart(const PerLoad& which);
     PerLoad               go(const PerLoad& lengths);
+    void                  finish(const PerLoad& lengths);
     void                  turn(const PerLoad& betas);
     [[nodiscard]] double  answer(std::size_t load, std::ptrdiff_t place) const;
 
@@ -101,6 +102,7 @@ private:
     void solveCoarsest(compute::CommandList& list, const compute::Buffer& b, const compute::Buffer& x) const;
     void start(compute::CommandList& list) const;
     void turnAndApply(compute::CommandList& list, const compute::Buffer& z) const;
+    void advance(compute::CommandList& list) const;
     void goAlong(compute::CommandList& list) const;
 
     [[nodiscard]] PerLoad sums(Sum which) const;
@@ -118,7 +120,7 @@ private:
     compute::Buffer                rightInFloats_, leftInFloats_;
     compute::Buffer                staging_, givenRight_, givenFloats_, turns_, lengths_; ///< written by the host
     compute::Buffer                sums_, read_;                                          ///< read by it
-    compute::CommandList           send_, begin_, aim_, again_, go_, fetch_;
+    compute::CommandList           send_, begin_, aim_, again_, go_, finish_, fetch_;
 };
 
 } // namespace palp
