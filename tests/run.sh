@@ -62,7 +62,7 @@ run_on_driver() (
     export VK_DRIVER_FILES="$driver" VK_ICD_FILENAMES="$driver" PALPATE_SOLVER=0
     "$1/bin/palpate" devices --processors || exit 1
     failures=0
-    # A process for each suite: some drivers open a few dozen processors in the life of one, and then none.
+    # A process for each suite: a driver of hardware once listed no processor any more, and all later tests of that one failed.
     for program in "$1"/bin/palp_*_shader_test; do
         for suite in $("$program" --gtest_list_tests | sed -n 's/^\([^ ]*\.\).*/\1/p'); do
             say "== $(basename "$program"): $suite"
