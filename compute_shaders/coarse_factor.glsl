@@ -2,7 +2,8 @@
 // columns within reach updated side by side.
 //
 // The includer declares  band  and  factor,  buffers of real: columns of the lower triangle of A, and those of L with the
-// inverse of the diagonal in its place, 0 where rounding has left no pivot. Include coarse_band.h first.
+// inverse of the diagonal in its place, 0 where rounding has left no pivot. Include coarse_band.h first. A workgroup has a
+// power of two of invocations.
 
 #ifdef PALPATE_DOUBLE
 const real kLeast = real(kLeastPivotDouble), kDoubtful = kLeast;

@@ -3,8 +3,7 @@
 // Reads      columns of L with inverse diagonal (real), forces of the coarsest level
 // Writes     deflection of the coarsest level
 //
-// With PALPATE_INVERTS load n is a unit force at node n, and column n of the inverse is written (real): a plate
-// that is softly held sinks by a thousand times more than it bends, and floats would round the bending away.
+// With PALPATE_INVERTS load n is a unit force at node n, and column n of the inverse is written (real).
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

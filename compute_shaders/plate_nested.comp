@@ -5,7 +5,7 @@
 //            put aside
 //
 // Loads are gathered downwards; the coarsest level is solved; then level by level upwards the answer is interpolated and
-// takes a step of conjugate gradients, or push.steps on the first level. All is in floats: the answer begins the iteration
+// takes a step of conjugate gradients, or push.steps on the first level. All but the coarsest level's sums is in floats: the answer begins the iteration
 // on a finer level, whose residual is computed anew, so that its rounding costs no accuracy.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -19,9 +19,9 @@ const int kSweeps = kNestedSweeps;
 layout(push_constant) uniform Constants { NestedPush push; };
 layout(std430, binding = 6) readonly buffer Load { float given[]; };
 layout(std430, binding = 8) writeonly buffer Deflection { float w[]; };
-layout(std430, binding = 9) buffer Loads { float f[]; };
+layout(std430, binding = 9) coherent buffer Loads { float f[]; };
 layout(std430, binding = 10) buffer Answer { float x[]; };
-layout(std430, binding = 11) buffer Residual { float r[]; };
+layout(std430, binding = 11) coherent buffer Residual { float r[]; };
 layout(std430, binding = 12) buffer Direction { float p[]; };
 
 float givenForce(int node);

@@ -3,8 +3,9 @@
 // A dispatch on a small level costs mainly the wait for it, so all small levels together are one dispatch. Invocations
 // exchange numbers of a cycle through shared memory only; deflections put aside on the way down are each invocation's own
 // nodes'. Sweeps, residual and transfers equal those of single dispatches, to the bit; the coarsest level is solved by its
-// inverse, which invocations share better than substitution, in doubles where the processor has them: also where a double takes
-// 64 times as long as a float that is less than what pairs of floats would take for the same digits.
+// inverse, which invocations share better than substitution. Its sums are in doubles where the processor has them: a plate
+// that is softly held sinks by a thousand times more than it bends, and floats would round the bending away. Pairs of floats
+// would take longer, also where a double takes 64 times as long as a float.
 //
 // The includer declares push, with the numbers of levels and of nodes of all of them, kSweeps before and after each
 // correction, and  float givenForce(int node),  the force of a node of the level that a cycle begins with.
@@ -25,7 +26,7 @@ layout(std430, binding = 2) readonly buffer Divisor { float inverseDivisor[]; };
 layout(std430, binding = 3) readonly buffer TableX { float tablesX[]; };
 layout(std430, binding = 4) readonly buffer TableZ { float tablesZ[]; };
 layout(std430, binding = 5) readonly buffer Inverse { wide inverse[]; };
-layout(std430, binding = 7) buffer Aside { float aside[]; };
+layout(std430, binding = 7) coherent buffer Aside { float aside[]; };
 
 shared float pool[kTailPool];
 
@@ -164,8 +165,8 @@ wide partOfProduct(int nodes, int row, int begin, int end)
     return (a + b) + (c + d);
 }
 
-// Where there are more invocations than nodes several share a row. Their sums meet, each as two floats, in the pool of the
-// tail's largest level, which holds nothing while the coarsest one is solved.
+// Where there are more invocations than nodes several share a row. Their sums meet in the pool of the tail's largest level,
+// which holds nothing while the coarsest one is solved; a double there is two floats.
 void solveCoarsest()
 {
     int nodes = nodesOf(here.plate), lane = int(gl_LocalInvocationID.x);

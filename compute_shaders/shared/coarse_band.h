@@ -11,7 +11,6 @@
 #ifdef __cplusplus
 #include <cmath>
 namespace palp::shared {
-using std::sqrt;
 #define PALPATE_PRECISE
 #else
 #define PALPATE_PRECISE precise
@@ -46,20 +45,30 @@ PALPATE_INLINE int rowOf(PlateLevel g, int unknown)
 }
 
 // 1 / sqrt(x), the inverse of the factor's diagonal. That of a double comes from a float's by two steps of Newton's method,
-// each of which doubles the digits: a GPU takes a thousand cycles of its clock for a root and a quotient of doubles, for
-// which all columns of the factor would wait, one after the other. Pivots are of order one, and no smaller than 1e-30.
+// each of which doubles the digits, for which all columns of the factor wait one after the other. Pivots are of order one;
+// those that a float does not hold are taken as they are.
 PALPATE_INLINE float inverseRoot(float x)
 {
+#ifdef __cplusplus
+    using std::sqrt;
+#endif
     PALPATE_PRECISE float root = sqrt(x), inverse = 1.0f / root;
     return inverse;
 }
 #if defined(__cplusplus) || defined(PALPATE_DOUBLE)
 PALPATE_INLINE double inverseRoot(double x)
 {
+#ifdef __cplusplus
+    using std::sqrt;
+#endif
+    if (!(x > double(1e-30f) && x < double(1e30f))) {
+        PALPATE_PRECISE double root = sqrt(x), inverse = double(1.0f) / root;
+        return inverse;
+    }
     PALPATE_PRECISE double once  = double(inverseRoot(float(x)));
     PALPATE_PRECISE double twice = once + once * (double(0.5f) - double(0.5f) * x * once * once);
-    PALPATE_PRECISE double root  = twice + twice * (double(0.5f) - double(0.5f) * x * twice * twice);
-    return root;
+    PALPATE_PRECISE double thrice = twice + twice * (double(0.5f) - double(0.5f) * x * twice * twice);
+    return thrice;
 }
 #endif
 

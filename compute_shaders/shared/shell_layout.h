@@ -108,7 +108,8 @@ inline
 // The most unknowns of the coarsest level that a workgroup takes, with the empty ones behind them.
 const uint kMostShellUnknowns = 1024u;
 
-// Numbers of the columns of its factor that a workgroup keeps together: at least two columns, whose length is below the above.
+// Numbers of the columns of its factor that a workgroup keeps together: room for two columns at least, because one has fewer
+// than kMostShellUnknowns.
 const uint kShellTogether = 2048u;
 
 #ifdef __cplusplus

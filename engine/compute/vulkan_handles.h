@@ -52,7 +52,8 @@ public:
     void setName(VkObjectType type, std::uint64_t handle, const std::string& name) const;
 
     std::unique_ptr<Instance>        instance;
-    double                           patience = 0; ///< [s]
+    double                           patience = 0;     ///< [s]
+    bool                             looks    = false; ///< at the fence before it sleeps: of solves on hardware
     VkPhysicalDevice                 physical = VK_NULL_HANDLE;
     VkPhysicalDeviceLimits           native{};
     VkPhysicalDeviceMemoryProperties memory{};

@@ -48,11 +48,14 @@ TEST(GoldenPicture, OnePixelMoreFails)
 TEST(GoldenPicture, AnEdgeThroughThePixelsOfATiePassesAndAPixelMoreFails)
 {
     Image tied = picture();
-    for (std::size_t n = 0; n < kGoldenStrays; ++n) tied.at(17, int(n) * 19).green -= 25;
+    for (std::size_t n = 0; n < kGoldenStrays; ++n) tied.at(17, int(n) * 19).green += 25;
     EXPECT_TRUE(looksLike(tied, picture()));
     EXPECT_EQ(differenceOf(tied, picture()).strays, kGoldenStrays);
-    tied.at(18, 203).green -= 4; // a level more than may differ
-    EXPECT_FALSE(looksLike(tied, picture()));
+    Image many = tied, far = tied;
+    many.at(18, 203).green -= 4; // a level more than may differ, in one pixel more
+    EXPECT_FALSE(looksLike(many, picture()));
+    far.at(17, 0).green = std::uint8_t(picture().at(17, 0).green + kGoldenStrayLevels + 1);
+    EXPECT_FALSE(looksLike(far, picture()));
 }
 
 TEST(GoldenPicture, AShapeThatMovedByOnePixelFails)
@@ -63,7 +66,7 @@ TEST(GoldenPicture, AShapeThatMovedByOnePixelFails)
 TEST(GoldenPicture, AColourEightLevelsOffFails)
 {
     Image other = picture();
-    for (int x = 200; x < 213; ++x) other.at(x, 110).green += 8; // thirteen pixels are enough
+    for (int x = 200; x < 209; ++x) other.at(x, 110).green += 8; // nine pixels are enough
     EXPECT_FALSE(looksLike(other, picture()));
 }
 
@@ -79,6 +82,7 @@ TEST(GoldenPicture, AMissingCharacterFails)
     EXPECT_FALSE(looksLike(picture("1.25 N at 60 H"), picture()));
     EXPECT_FALSE(looksLike(picture("125 N at 60 Hz"), picture())); // a full stop
     EXPECT_FALSE(looksLike(picture("1.26 N at 60 Hz"), picture()));
+    EXPECT_FALSE(looksLike(picture("1.25 N at 60 Hz."), picture())); // one behind all others
 }
 
 TEST(GoldenPicture, AnotherSizeFails)

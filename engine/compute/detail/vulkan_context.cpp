@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <mutex>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -109,6 +110,7 @@ void VulkanContext::describe(const Candidate& candidate, Purpose purpose)
     native              = candidate.limits;
     family              = purpose != Purpose::compute ? candidate.drawFamily.value() : candidate.family;
     timestampBits       = candidate.timestampBits;
+    looks               = purpose == Purpose::compute && description.kind != ProcessorKind::software;
     bitExact            = candidate.driver == VK_DRIVER_ID_MESA_LLVMPIPE;
     limits.buffer       = std::size_t(std::min<VkDeviceSize>(native.maxStorageBufferRange, candidate.maxBufferBytes));
     limits.invocations  = native.maxComputeWorkGroupInvocations;
@@ -195,7 +197,7 @@ std::uint64_t VulkanContext::patienceInNanoseconds() const
 
 void VulkanContext::finish()
 {
-    if (description.kind != ProcessorKind::software) lookAtFence();
+    if (looks) lookAtFence();
     const VkResult result = vkWaitForFences(device, 1, &fence, VK_TRUE, patienceInNanoseconds());
     if (result == VK_TIMEOUT || result == VK_ERROR_OUT_OF_HOST_MEMORY || result == VK_ERROR_OUT_OF_DEVICE_MEMORY)
         abandoned = true;
@@ -211,8 +213,7 @@ void VulkanContext::lookAtFence() const
     const std::chrono::duration<double> longest =
         std::min<std::chrono::duration<double>>(kLooking, std::chrono::duration<double>(patience));
     const auto began = Clock::now();
-    while (vkGetFenceStatus(device, fence) == VK_NOT_READY && Clock::now() - began < longest) {
-    }
+    while (vkGetFenceStatus(device, fence) == VK_NOT_READY && Clock::now() - began < longest) std::this_thread::yield();
 }
 
 std::vector<std::string> VulkanContext::takeMessages()

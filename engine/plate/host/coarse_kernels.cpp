@@ -1,6 +1,6 @@
 #include "engine/plate/host/together.h"
 
-// The coarsest level: coarse_factor.comp and both variants of coarse_solve.comp.
+// The coarsest level: coarse_factor.comp and coarse_solve.comp.
 //
 // The shaders update all unknowns within reach of the one that they have just solved. Here an unknown is updated by all
 // those before it, which loads its numbers once: they stay in registers. The same terms are subtracted from every
@@ -219,31 +219,9 @@ void coarseSolveOf(const HostDispatch& d)
     }
 }
 
-template <class Real>
-void coarseInvertOf(const HostDispatch& d)
-{
-    const PlateLevel& g        = pushed<LevelPush>(d).level;
-    const auto*       factor   = bound<const Real>(d, 0);
-    auto*             inverse  = bound<Real>(d, 1);
-    const int         unknowns = int(nodesOf(g));
-    Sides<float>      sides;
-
-    Real right[kMostCoarseNodes + kMostHalfBand];
-    for (int unit = 0; unit < unknowns; ++unit) {
-        for (int n = 0; n < kMostCoarseNodes + kMostHalfBand; ++n) right[n] = Real(0);
-        const auto nodeOf = [&](int n) { return columnOf(g, n) * (g.cellsZ + 1) + rowOf(g, n); };
-        for (int n = 0; n < unknowns; ++n)
-            if (nodeOf(n) == unit && !sides.isHeld(g, columnOf(g, n), rowOf(g, n))) right[n] = Real(1);
-        forward(factor, halfBand(g), unknowns, right);
-        backward(factor, halfBand(g), unknowns, right);
-        for (int n = 0; n < unknowns; ++n) inverse[std::ptrdiff_t(unit) * unknowns + nodeOf(n)] = right[n];
-    }
-}
-
 } // namespace
 
 PALPATE_IN_BOTH_PRECISIONS(factor)
-PALPATE_IN_BOTH_PRECISIONS(coarseInvert)
 PALPATE_REALS_ALONE_AND_TOGETHER(coarseSolve)
 
 } // namespace palp::PALPATE_ISA

@@ -68,7 +68,7 @@ struct MultigridShellSolver::Impl {
     {
         const auto began = std::chrono::steady_clock::now();
         fields.setRight(loads);
-        // Loads in doubles, one on the host or those of a processor, keep their bits whatever other loads there are.
+        // Loads in doubles, one on the host or those of a processor, keep their bits until several may stop together.
         const auto states = ShellGradients<Fields>(fields).solve(wanted.tolerance, wanted.mostSteps);
         if constexpr (std::is_same_v<Fields, ProcessorShellFields>) fields.fetch();
         const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();

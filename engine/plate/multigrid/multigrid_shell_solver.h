@@ -55,9 +55,9 @@ struct ShellAnswer {
 /// symmetric V cycle whose relaxation changes both fields of a node at once.
 ///
 /// The cycle is in floats on assembled rows, conjugate gradients and their operator are in doubles. The host takes loads by
-/// eights, whose fields are floats then; a processor of Vulkan takes them all at once, each with the bits that the host
-/// gives to one alone (on lavapipe; others may fuse). Three or more of the host's eights may stop together after one step, so
-/// that their answers hang on each other within the tolerance. The host assembles rows and factors for both. The matrix is indefinite, so that conjugate gradients minimise nothing; the
+/// eights, whose fields are floats then; a processor of Vulkan takes them all at once, each as the host solves one alone (to
+/// the bit on lavapipe, with CoarsestShell::byFactors). Three or more loads together may stop after one step, so that their
+/// answers hang on each other within the tolerance. The host assembles rows and factors for both. The matrix is indefinite, so that conjugate gradients minimise nothing; the
 /// products of their formulas may be negative, and steps are as many as the plate takes, or two more (7 at most to 1e-4
 /// in the compliance, for discs of 100), however many cells there are and however curved it is. They start from nested
 /// iteration. The bits are the same on every instruction set. Beyond sharp contrasts of some thousands, such as of nodes

@@ -20,11 +20,11 @@ namespace {
 struct Shapes {
     compute::Workgroup tile;    ///< nodes of a grid
     compute::Workgroup line;    ///< nodes one after the other; 65535 of them hold 2049 x 2049 nodes
-    compute::Workgroup alone;   ///< the one workgroup of a serial kernel; kMostHalfBand invocations find work
+    compute::Workgroup alone;   ///< the one workgroup of a serial kernel: one or two invocations per number in reach
     compute::Workgroup reduce;  ///< at most kMostInvocations of cg_scalars.comp
-    compute::Workgroup tail;    ///< the one workgroup of plate_tail.comp
+    compute::Workgroup tail;    ///< the one workgroup of plate_tail.comp: a multiple of kTailSums
     compute::Workgroup entries; ///< of plate_divisor.comp: nodes of a row, each with its 9 entries
-    compute::Workgroup factor;  ///< the one workgroup of prepare_end.comp that factors
+    compute::Workgroup factor;  ///< the one workgroup of prepare_end.comp that factors: a power of two
     compute::Workgroup region;  ///< of plate_region.glsl: a power of two
     compute::Workgroup jumpTile{shared::kTile, shared::kTile, 1};
 };
@@ -70,7 +70,9 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
         throw Error("the host has no fused passes: they spare dispatches, of which it has none");
     constexpr std::uint32_t kBuffers = 14; // of the kernel that takes most
     const compute::Limits   limits   = context.limits();
-    const bool              fits     = limits.sharedMemory >= sizeof(float) * (shared::kTailPool + shared::kTailSums) &&
+    // The kernel of nested iteration has the most shared memory, 32.5 kB; the next ones, on the way down and for the inverse,
+    // have 25 and 23.
+    const bool fits = limits.sharedMemory >= sizeof(float) * (shared::kTailPool + shared::kTailSums) &&
                       limits.buffers >= kBuffers && limits.invocations >= kFewestOfRegions;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
     return schedule == Schedule::fused ||
@@ -139,18 +141,18 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
 #include "compute_shaders/shared/plate_kernels.def"
     });
     if (coarse && !f64) {
-        all_->assemble     = compute::Kernel(context, kernels::assemble<double>(host), shapes.tile);
-        all_->factor       = compute::Kernel(context, kernels::factor<double>(host), shapes.alone);
-        all_->coarseSolve  = compute::Kernel(context, kernels::coarseSolve<double>(host), shapes.alone);
-        all_->coarseInvert = compute::Kernel(context, kernels::coarseInvert<double>(host), shapes.alone);
+        all_->assemble    = compute::Kernel(context, kernels::assemble<double>(host), shapes.tile);
+        all_->factor      = compute::Kernel(context, kernels::factor<double>(host), shapes.alone);
+        all_->coarseSolve = compute::Kernel(context, kernels::coarseSolve<double>(host), shapes.alone);
     }
     if (chosen(smoother, schedule, context) == Smoother::exactRims) all_->rims.emplace(rimKernels(context, host, f64));
     if (!isFused(context, schedule, all_->smoothing.by)) return;
     all_->fused.emplace(fusedKernels(context, shapes, f64));
     if (coarse && !f64) {
-        all_->fused->prepareEnd = compute::Kernel(context, kernels::prepareEnd<double>(), shapes.factor);
-        all_->fused->tail       = bySweeps(context, kernels::tail<double>(), shapes.tail);
-        all_->fused->nested     = compute::Kernel(context, kernels::nested<double>(), shapes.tail);
+        all_->fused->prepareEnd   = compute::Kernel(context, kernels::prepareEnd<double>(), shapes.factor);
+        all_->fused->coarseInvert = compute::Kernel(context, kernels::coarseInvert<double>(), shapes.alone);
+        all_->fused->tail         = bySweeps(context, kernels::tail<double>(), shapes.tail);
+        all_->fused->nested       = compute::Kernel(context, kernels::nested<double>(), shapes.tail);
     }
 }
 

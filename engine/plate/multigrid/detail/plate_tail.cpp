@@ -96,7 +96,7 @@ Buffer PlateTail::field(compute::Context& context, const char* name) const
 
 void PlateTail::invertFactor(CommandList& list, const Buffer& factor) const
 {
-    list.dispatch(k.coarseInvert, {factor, inverse_}, shared::LevelPush{layout_.levels.back().plate},
+    list.dispatch(k.fused->coarseInvert, {factor, inverse_}, shared::LevelPush{layout_.levels.back().plate},
                   {1, 1, coarsestNodes_});
 }
 

@@ -230,8 +230,8 @@ void ShellCoarseSolver::collect(const ShellLevel& level)
             for (const SharedEntry& e : kOwn) {
                 if (!inside(e)) continue;
                 for (int field = 0; field < 2; ++field) { // a change between two nodes pulls at both
-                    const double k = (field == 0 ? 1 : -1) *
-                                     level.exactAt(e.plane + (field == 0 ? kBendEast : kStressEast), i, j);
+                    const double k =
+                        (field == 0 ? 1 : -1) * level.exactAt(e.plane + (field == 0 ? kBendEast : kStressEast), i, j);
                     add(i, j, field, i + e.di, j + e.dj, field, k);
                     add(i, j, field, i, j, field, -k);
                     add(i + e.di, j + e.dj, field, i + e.di, j + e.dj, field, -k);

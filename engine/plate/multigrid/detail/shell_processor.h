@@ -23,7 +23,8 @@ struct ShellKernels::All {
 };
 
 /// Vectors of conjugate gradients on a processor of Vulkan, and the cycle that preconditions them; of any number of loads,
-/// each with the bits that HostShellFields<false> gives it, where the processor rounds as the host does.
+/// each with the bits that HostShellFields<false> gives it, where the processor rounds as the host does and the coarsest level
+/// is solved by factors; but finish() ends what several loads gain together, as that of the host's eights does.
 ///
 /// Levels and factors are the host's, made in doubles and copied once per shell. A step is two submissions, because the
 /// host divides two numbers per load between them: the length of a step is known once its direction is, and whether there
