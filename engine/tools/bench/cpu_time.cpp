@@ -19,6 +19,12 @@ double milliseconds(clockid_t clock)
     return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
 }
 
+Clock clockOf(compute::ProcessorKind kind)
+{
+    return kind == compute::ProcessorKind::software || kind == compute::ProcessorKind::host ? Clock::processor
+                                                                                            : Clock::wall;
+}
+
 } // namespace
 
 double threadMilliseconds()
@@ -53,16 +59,6 @@ Quartiles quartiles(std::vector<double> values)
     };
     return {at(0.25), at(0.5), at(0.75)};
 }
-
-namespace {
-
-Clock clockOf(compute::ProcessorKind kind)
-{
-    return kind == compute::ProcessorKind::software || kind == compute::ProcessorKind::host ? Clock::processor
-                                                                                            : Clock::wall;
-}
-
-} // namespace
 
 Clock clockOf(const compute::Context& context)
 {

@@ -105,7 +105,7 @@ TEST_F(ShellOnProcessor, StopsAfterOneStepWhereAllLoadsHaveGainedEnough)
         EXPECT_TRUE(found[n].report.converged);
         const NodeField exact = reference.solve(loads[n]).deflection;
         EXPECT_NEAR(found[n].work / responseOf(Footprint(loads[n]), exact).work, 1, 1e-4) << "the tolerance's square";
-        EXPECT_LT(largestDifference(found[n].deflection, exact), 1e-2);
+        EXPECT_LT(largestDifference(found[n].deflection, exact), 1e-3) << "3e-4; without the step it is 6e-3";
     }
     EXPECT_GT(solved(shell, {loads.data(), 1}, 1e-2).front().report.iterations, 1) << "one load alone tells less";
 }
