@@ -1,6 +1,7 @@
 #pragma once
 #include <memory>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -139,9 +140,11 @@ public:
     VkCommandBuffer commands = VK_NULL_HANDLE;
 
 private:
-    /// Records the barrier after every command but the last: later commands see what earlier ones wrote.
-    void            separate() const;
-    void            bind(const Kernel& kernel, const Bindings& bindings, const Push& push);
+    enum class Next { copies, computes, readsItsSize };
+    /// Records the barrier before a command, which then sees what earlier ones wrote.
+    void            separate(Next next) const;
+    void            bind(const Kernel& kernel, const Bindings& bindings, const Push& push, Next next);
+    void            meansToWrite(VkBuffer buffer);
     VkDescriptorSet descriptorSet(const Kernel& kernel);
 
     VulkanContext&                                                gpu;
@@ -149,6 +152,7 @@ private:
     std::vector<Owned<VkDescriptorPool, vkDestroyDescriptorPool>> descriptorPools;
     std::vector<Owned<VkQueryPool, vkDestroyQueryPool>>           queryPools;
     std::uint32_t                                                 timestamps = 0;
+    std::set<VkBuffer>                                            seenSizes; ///< of dispatches, as they are by now
 };
 
 } // namespace palp::compute

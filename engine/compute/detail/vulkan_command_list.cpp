@@ -55,11 +55,28 @@ VulkanList::VulkanList(VulkanContext& owner) : Handles(owner), gpu(owner)
     check(vkBeginCommandBuffer(commands, &begin), "record a command list");
 }
 
-void VulkanList::separate() const
+void VulkanList::separate(Next next) const
 {
-    // Before the first command too: the writes of the run before are available by then, but not yet visible.
-    barrier(commands, kWork, kWrites, kWork | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
-            kWrites | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+    // Before the first command too: the writes of the run before are available by then, but not yet visible. Only the
+    // command's own stages wait: that which reads sizes waits longest.
+    constexpr VkPipelineStageFlags kComputes = VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
+    constexpr VkAccessFlags        kUses     = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
+    switch (next) {
+    case Next::copies:
+        return barrier(commands, kWork, kWrites, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                       VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT);
+    case Next::computes:
+        return barrier(commands, kWork, kWrites, kComputes, kUses);
+    case Next::readsItsSize:
+        return barrier(commands, kWork, kWrites, kComputes | VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT,
+                       kUses | VK_ACCESS_INDIRECT_COMMAND_READ_BIT);
+    }
+}
+
+// A kernel says how many buffers it has, not which of them it writes: any may be.
+void VulkanList::meansToWrite(VkBuffer buffer)
+{
+    seenSizes.erase(buffer);
 }
 
 void VulkanList::end()
@@ -85,7 +102,7 @@ VkDescriptorSet VulkanList::descriptorSet(const Kernel& kernel)
     }
 }
 
-void VulkanList::bind(const Kernel& kernel, const Bindings& bindings, const Push& push)
+void VulkanList::bind(const Kernel& kernel, const Bindings& bindings, const Push& push, Next next)
 {
     const auto&                         compiled = static_cast<const VulkanKernel&>(kernel.handles());
     std::vector<VkDescriptorBufferInfo> ranges;
@@ -110,7 +127,8 @@ void VulkanList::bind(const Kernel& kernel, const Bindings& bindings, const Push
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_COMPUTE, compiled.pipeline.get());
     if (!push.empty())
         vkCmdPushConstants(commands, layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, std::uint32_t(push.size()), push.data());
-    separate();
+    separate(next);
+    for (const Binding& binding : bindings) meansToWrite(bufferOf(*binding.buffer));
 }
 
 void VulkanList::timestamp()
@@ -136,28 +154,31 @@ void VulkanList::dispatch(const Kernel& kernel, const Bindings& bindings, const 
     PALP_EXPECT(groups.x <= most[0] && groups.y <= most[1] && groups.z <= most[2],
                 std::string("the kernel ") + kernel.code().name + " is dispatched in " + std::to_string(groups.x) +
                     "x" + std::to_string(groups.y) + "x" + std::to_string(groups.z) + " groups");
-    bind(kernel, bindings, push);
+    bind(kernel, bindings, push, Next::computes);
     vkCmdDispatch(commands, groups.x, groups.y, groups.z);
 }
 
 void VulkanList::dispatchIndirect(const Kernel& kernel, const Bindings& bindings, const Push& push,
                                   const Buffer& groups, std::size_t offset)
 {
-    bind(kernel, bindings, push);
+    const bool known = !seenSizes.insert(bufferOf(groups)).second;
+    bind(kernel, bindings, push, known ? Next::computes : Next::readsItsSize);
     vkCmdDispatchIndirect(commands, bufferOf(groups), offset);
 }
 
 void VulkanList::copy(const Buffer& from, std::size_t fromOffset, const Buffer& to, std::size_t toOffset,
                       std::size_t bytes)
 {
-    separate();
+    separate(Next::copies);
+    meansToWrite(bufferOf(to));
     const VkBufferCopy region{fromOffset, toOffset, bytes};
     vkCmdCopyBuffer(commands, bufferOf(from), bufferOf(to), 1, &region);
 }
 
 void VulkanList::fill(const Buffer& buffer, std::uint32_t word)
 {
-    separate();
+    separate(Next::copies);
+    meansToWrite(bufferOf(buffer));
     vkCmdFillBuffer(commands, bufferOf(buffer), 0, VK_WHOLE_SIZE, word);
 }
 
