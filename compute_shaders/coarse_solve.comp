@@ -27,7 +27,7 @@ void write(int at, real value) { w[at] = float(value); }
 #ifdef PALPATE_INVERTS
 // Columns of L, many at a time: of hundreds of workgroups that wait for their own, column after column, memory would be
 // the time.
-const int kTogether = 32; // a multiple of kBlock
+const int kTogether = kColumnsTogether;
 shared real columns[(kTogether + kMostHalfBand) * (kMostHalfBand + 1)];
 int firstColumn;
 

@@ -19,6 +19,7 @@ namespace palp::shared {
 const int kMostCoarseCells = 16; // along either side; the kernels' shared arrays are made for it
 const int kMostCoarseNodes = (kMostCoarseCells + 1) * (kMostCoarseCells + 1);
 const int kMostHalfBand    = 2 * (kMostCoarseCells + 1);
+const int kColumnsTogether = 32; // of the factor, in shared memory where the inverse is made; a multiple of the block
 
 // A pivot of at most this share of the diagonal is rounding, perhaps negative. Its node is then held, by an inverse of
 // 0, which keeps the factor finite and the solve symmetric; but the motion with that node is lost to the solver, which

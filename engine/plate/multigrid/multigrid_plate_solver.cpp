@@ -136,7 +136,7 @@ struct MultigridPlateSolver::Impl {
     int                        lastSteps = kStepsOfLists.back(); ///< of the last solve
 
     Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
-        : Impl(processor, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity)))
+        : Impl(processor, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity), kernels.coarsestCells))
     {
     }
 

@@ -37,7 +37,8 @@ struct Levels {
     GridHierarchy           grids;
     std::vector<RoughLevel> levels;
 
-    explicit Levels(const Plate& plate) : grids(gridHierarchy(plate, 1)), levels(grids.levels.size(), RoughLevel(plate))
+    explicit Levels(const Plate& plate)
+        : grids(gridHierarchy(plate, 1, shared::kTailCoarseCells)), levels(grids.levels.size(), RoughLevel(plate))
     {
         for (std::size_t l = 0; l < levels.size(); ++l) {
             levels[l].g = grids.levels[l].plate;
@@ -181,7 +182,7 @@ protected:
     static std::vector<compute::Workgroup> shapesOfTail()
     {
         std::vector<compute::Workgroup> shapes;
-        for (const std::uint32_t lanes : {1024U, 256U})
+        for (const std::uint32_t lanes : {640U, 256U})
             if (lanes <= context().limits().invocations) shapes.push_back({lanes, 1, 1});
         return shapes;
     }
@@ -426,10 +427,10 @@ TEST_F(FusedCycleTest, TheTailIsAWholeCycle)
     if (onHost()) GTEST_SKIP() << "the host has no such kernel";
     if (isSlow()) GTEST_SKIP() << "with every access checked this kernel takes two minutes to compile";
     using enum Edge;
-    const std::vector<Plate> all{onRoughBed(roughPlate(40, 26, {clamped, free, supported, clamped})), // two levels
-                                 roughPlate(64, 64, {clamped, clamped, clamped, clamped}),            // three
-                                 roughPlate(64, 33, {supported, supported, free, clamped}, 1, 1.9),
-                                 roughPlate(9, 12, {free, clamped, free, free})}; // one
+    const std::vector<Plate> all{onRoughBed(roughPlate(16, 11, {clamped, free, supported, clamped})), // two levels
+                                 roughPlate(32, 32, {clamped, clamped, clamped, clamped}),            // three
+                                 roughPlate(32, 17, {supported, supported, free, clamped}, 1, 1.9),
+                                 roughPlate(7, 8, {free, clamped, free, free})}; // one
     if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
     inEachPrecision([&](auto number) {
         using Real = decltype(number);
@@ -473,9 +474,9 @@ TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
         for (const compute::Workgroup shape : shapesOfTail()) {
             const compute::Kernel kernel(context(), kernels::nested<Real>(), shape);
             for (const Plate& plate :
-                 {onRoughBed(roughPlate(40, 26, {clamped, free, supported, clamped})), // two levels
-                  roughPlate(64, 64, {clamped, clamped, clamped, clamped}),            // three
-                  roughPlate(64, 33, {supported, supported, free, clamped}, 1, 1.9)}) {
+                 {onRoughBed(roughPlate(16, 11, {clamped, free, supported, clamped})), // two levels
+                  roughPlate(32, 32, {clamped, clamped, clamped, clamped}),            // three
+                  roughPlate(32, 17, {supported, supported, free, clamped}, 1, 1.9)}) {
                 const Levels     levels(plate);
                 const TailLayout tail = tailLayout(levels.grids);
                 ASSERT_EQ(tail.first, 0u);
@@ -512,17 +513,17 @@ TEST_F(FusedCycleTest, NestedIterationIsItsPasses)
     });
 }
 
-TEST(TailLayout, TakesTheLevelsOfUpTo64CellsAndFitsTheKernel)
+TEST(TailLayout, TakesTheLevelsOfUpTo32CellsAndFitsTheKernel)
 {
     const auto layoutOf = [](int cellsX, int cellsZ, double spacingX) {
         Plate plate;
         plate.grid = {cellsX, cellsZ, spacingX, 1};
-        return tailLayout(gridHierarchy(plate, 1));
+        return tailLayout(gridHierarchy(plate, 1, shared::kTailCoarseCells));
     };
-    EXPECT_EQ(layoutOf(1024, 1024, 1).first, 4u); // 1024, 512, 256 and 128 cells have dispatches of their own
+    EXPECT_EQ(layoutOf(1024, 1024, 1).first, 5u); // 1024, 512, 256, 128 and 64 cells have dispatches of their own
     EXPECT_EQ(layoutOf(1024, 1024, 1).levels.size(), 3u);
-    EXPECT_EQ(layoutOf(64, 64, 1).first, 0u);
-    EXPECT_EQ(layoutOf(65, 65, 1).first, 1u);
+    EXPECT_EQ(layoutOf(32, 32, 1).first, 0u);
+    EXPECT_EQ(layoutOf(33, 33, 1).first, 1u);
     for (const double spacingX : {0.1, 0.4, 0.7, 1.0, 1.6, 3.0})
         for (int cellsX = 8; cellsX <= 2048; cellsX += cellsX / 3)
             for (int cellsZ = 8; cellsZ <= 2048; cellsZ += cellsZ / 3) {

@@ -164,19 +164,21 @@ TEST_F(MultigridPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
             EXPECT_LT(errorOf(found[n].deflection, expected[n].deflection), 2e-6)
                 << what; // within the tolerance of each
         EXPECT_NEAR(*found[0].report.iterations, *expected[0].report.iterations, 1) << what;
-        const double step = *expected[0].report.workUnits / *expected[0].report.iterations;
-        EXPECT_NEAR(*found[0].report.workUnits, *expected[0].report.workUnits, 1.5 * step) << what;
+        if (plate.grid.cellsX >= 100) { // the level that fused passes have below the coarsest one costs little
+            const double step = *expected[0].report.workUnits / *expected[0].report.iterations;
+            EXPECT_NEAR(*found[0].report.workUnits, *expected[0].report.workUnits, 1.5 * step) << what;
+        }
         return std::pair(slow.dispatchesPerCycle(), fast.dispatchesPerCycle());
     };
     for (const Law& law : kLaws) {
         if (!law.smooth) continue; // where the rigidity jumps, passes are not fused
         const auto [slow, fast] = compare(plateOf(128, 128, {}, law), law.name);
         EXPECT_EQ(slow, 34) << law.name; // 3 levels of 11, and the coarsest one
-        EXPECT_EQ(fast, 3) << law.name;  // down and up of 128 cells, and the tail
+        EXPECT_EQ(fast, 5) << law.name;  // down and up of 128 and of 64 cells, and the tail
     }
     (void)compare(plateOf(100, 57, {free, clamped, supported, free}, kLaws[1]), "rectangle");
     (void)compare(plateOf(24, 24, {supported, clamped, clamped, free}, kLaws[3]), "tail only");
-    (void)compare(plateOf(12, 9, {clamped, clamped, clamped, free}, kLaws[1]), "one level");
+    (void)compare(plateOf(7, 8, {clamped, clamped, clamped, free}, kLaws[1]), "one level");
 }
 
 /// Under a load in proportion to its foundation a free plate sinks without bending, whatever its rigidity: w = q / k.
@@ -344,9 +346,9 @@ TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
         int                                 step; ///< pass by pass
     };
     const PlateKernels fused(context(), Schedule::fused), onePassEach(context(), Schedule::passByPass);
-    for (const Row& row :
-         {Row{64, {4, 1, 4, 4, 1, 0}, 30}, Row{128, {4, 1, 4, 4, 3, 1}, 41}, Row{256, {4, 1, 16, 6, 5, 1}, 52},
-          Row{512, {4, 1, 28, 8, 7, 1}, 63}, Row{1024, {4, 1, 42, 10, 9, 1}, 74}}) {
+    for (const Row& row : {Row{32, {4, 1, 4, 4, 1, 0}, 19}, Row{64, {4, 1, 4, 4, 3, 1}, 30},
+                           Row{128, {4, 1, 16, 6, 5, 1}, 41}, Row{256, {4, 1, 28, 8, 7, 1}, 52},
+                           Row{512, {4, 1, 42, 10, 9, 1}, 63}, Row{1024, {4, 1, 58, 12, 11, 1}, 74}}) {
         const Plate plate  = plateOf(row.cells, row.cells, {}, kLaws[0]);
         const auto  counts = MultigridPlateSolver(context(), fused, plate, {}).commands();
         EXPECT_EQ(counts.prepare, row.fused.prepare) << row.cells;
@@ -357,13 +359,13 @@ TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
         EXPECT_EQ(counts.last, row.fused.last) << row.cells;
         EXPECT_EQ(MultigridPlateSolver(context(), onePassEach, plate, {}).commands().step, row.step) << row.cells;
     }
-    // Three dispatches of two extra sweeps on either way through a level: 11 for each of three levels, and the coarsest.
+    // Three dispatches of two extra sweeps on either way through a level: 11 for each of four levels, and the coarsest.
     const auto  laws  = std::ranges::find_if(kLaws, [](const Law& law) { return !law.smooth; });
     const Plate disc  = plateOf(128, 128, {}, *laws);
     const auto  sharp = MultigridPlateSolver(context(), fused, disc, {}).commands();
-    EXPECT_EQ(sharp.cycle, 34) << laws->name;
-    EXPECT_EQ(sharp.step, 41) << laws->name << ": the step itself has the bits, and the dispatches, of single passes";
-    EXPECT_GT(MultigridPlateSolver(context(), onePassEach, disc, {}).commands().cycle, 5 * sharp.cycle);
+    EXPECT_EQ(sharp.cycle, 45) << laws->name;
+    EXPECT_EQ(sharp.step, 52) << laws->name << ": the step itself has the bits, and the dispatches, of single passes";
+    EXPECT_GT(MultigridPlateSolver(context(), onePassEach, disc, {}).commands().cycle, 3 * sharp.cycle);
 }
 
 /// The goal of engine/performance.md. Conjugate gradients on all levels share the memory of the finest one's; each level
@@ -458,7 +460,7 @@ TEST_F(MultigridPlate, ASmoothContrastOfAHundredThousandIsSolvedUnderEverySchedu
                     EXPECT_LE(*found.report.iterations, 16) << what;
                     EXPECT_LT(error, 3e-4) << what << ": the tolerance is one of energy";
                     if (schedule == Schedule::fused && which == &slope) {
-                        EXPECT_LE(solver.dispatchesPerCycle(), 4) << what << ": fused, because nothing jumps";
+                        EXPECT_LE(solver.dispatchesPerCycle(), 5) << what << ": fused, because nothing jumps";
                     }
                 }
     }

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "engine/compute/command_list.h"
@@ -101,12 +102,12 @@ TEST_F(PrepareFused, FourDispatchesPrepareTheSameBits)
     }
 }
 
-/// Where the rigidity jumps the cycle is the same in both schedules, and ends with the coarsest level's factor.
+/// Where the rigidity jumps the cycle has the same sweeps in both schedules, but ends on another coarsest level: the answers
+/// agree as far as the steps go, to a few times the tolerance of the energy norm in the largest deflection.
 TEST_F(PrepareFused, PlatesThatJumpGetTheSameAnswerByEither)
 {
     if (onHost()) GTEST_SKIP() << "the host has no such kernels";
     if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
-    if (!context().bitExact()) GTEST_SKIP() << "a driver may fuse the sums of each kernel as it likes";
     using enum Edge;
     const PlateKernels fused(context(), Schedule::fused), each(context(), Schedule::passByPass);
     for (const Plate& plate : {onRoughBed(roughPlate(37, 22, {free, clamped, free, free})),
@@ -114,11 +115,17 @@ TEST_F(PrepareFused, PlatesThatJumpGetTheSameAnswerByEither)
         SCOPED_TRACE(describe(plate));
         NodeField load(plate.grid);
         load(plate.grid.cellsX / 2, plate.grid.cellsZ / 3) = 1;
-        const PlateSolution a = MultigridPlateSolver(context(), fused, plate, {}).solve(load),
-                            b = MultigridPlateSolver(context(), each, plate, {}).solve(load);
-        EXPECT_EQ(a.deflection.values(), b.deflection.values());
-        EXPECT_EQ(a.report.converged, b.report.converged);
-        EXPECT_EQ(a.report.iterations, b.report.iterations);
+        const MultigridPlateSolver::Settings settings{.tolerance = 1e-5};
+        const PlateSolution                  a = MultigridPlateSolver(context(), fused, plate, settings).solve(load),
+                            b                  = MultigridPlateSolver(context(), each, plate, settings).solve(load);
+        double apart = 0, largest = 0;
+        for (std::size_t n = 0; n < plate.grid.nodes(); ++n) {
+            apart   = std::max(apart, std::abs(a.deflection.values()[n] - b.deflection.values()[n]));
+            largest = std::max(largest, std::abs(b.deflection.values()[n]));
+        }
+        EXPECT_LT(apart, 3 * settings.tolerance * largest);
+        EXPECT_TRUE(a.report.converged && b.report.converged);
+        EXPECT_LE(std::abs(*a.report.iterations - *b.report.iterations), 1);
     }
 }
 

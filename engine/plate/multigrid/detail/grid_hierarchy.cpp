@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "compute_shaders/shared/coarse_band.h"
 #include "engine/core/contract.h"
 #include "engine/plate/multigrid/detail/transfer_table.h"
 
@@ -39,16 +38,17 @@ shared::PlateLevel levelOf(const PlateGrid& grid, const Plate& plate, double bed
     return level;
 }
 
-PlateGrid coarser(const PlateGrid& grid)
+constexpr int kFewestCells = 8; ///< an axis with fewer is not halved: interpolation needs four coarse nodes
+
+PlateGrid coarser(const PlateGrid& grid, int coarsest)
 {
-    constexpr int    kFewestCells = 8;   // an axis with fewer is not halved: interpolation needs four coarse nodes
-    constexpr double kUneven      = 1.5; // ratio of spacings [1]
+    constexpr double kUneven = 1.5; // ratio of spacings [1]
     const bool       mayX = grid.cellsX >= kFewestCells, mayZ = grid.cellsZ >= kFewestCells;
     bool             x = mayX && grid.spacingX < kUneven * grid.spacingZ;
     bool             z = mayZ && grid.spacingZ < kUneven * grid.spacingX;
     if (!x && !z) { // the axis that should be halved first cannot be
-        x = mayX && grid.cellsX > shared::kMostCoarseCells;
-        z = mayZ && grid.cellsZ > shared::kMostCoarseCells;
+        x = mayX && grid.cellsX > coarsest;
+        z = mayZ && grid.cellsZ > coarsest;
     }
     PlateGrid result = grid;
     if (x) result.cellsX = (grid.cellsX + 1) / 2;
@@ -60,8 +60,9 @@ PlateGrid coarser(const PlateGrid& grid)
 
 } // namespace
 
-GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity)
+GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity, int coarsest)
 {
+    PALP_EXPECT(coarsest >= kFewestCells && coarsest <= shared::kMostCoarseCells, std::to_string(coarsest) + " cells");
     PALP_EXPECT(unitRigidity > 0, std::to_string(unitRigidity) + " N m");
     const double hx = plate.grid.spacingX, hz = plate.grid.spacingZ;
     const double bed = plate.foundation * hx * hx * hz * hz / unitRigidity;
@@ -70,8 +71,8 @@ GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity)
     result.stiffness = unitRigidity / (hx * hz);
     for (PlateGrid grid = plate.grid;;) {
         result.levels.push_back({levelOf(grid, plate, bed), {}, {}});
-        if (grid.cellsX <= shared::kMostCoarseCells && grid.cellsZ <= shared::kMostCoarseCells) return result;
-        const PlateGrid next        = coarser(grid);
+        if (grid.cellsX <= coarsest && grid.cellsZ <= coarsest) return result;
+        const PlateGrid next        = coarser(grid, coarsest);
         result.levels.back().tableX = transferTable(grid.cellsX, next.cellsX, plate.edges.x0, plate.edges.x1);
         result.levels.back().tableZ = transferTable(grid.cellsZ, next.cellsZ, plate.edges.z0, plate.edges.z1);
         grid                        = next;

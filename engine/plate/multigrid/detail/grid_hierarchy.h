@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "compute_shaders/shared/coarse_band.h"
 #include "compute_shaders/shared/plate_level.h"
 #include "engine/plate/plate.h"
 
@@ -15,7 +16,7 @@ namespace palp {
 
 /// A grid and coarser and coarser ones over the same rectangle, with the multigrid kernels' data of each.
 ///
-/// A step halves the cells along both axes (rounding up), until no side has more than kMostCoarseCells. An axis is not
+/// A step halves the cells along both axes (rounding up), until no side has more than `coarsest` ones. An axis is not
 /// halved while its spacing is 1.5 times the other's or more, because point relaxation does not smooth along it, or
 /// when it has only 4 to 7 cells.
 struct GridHierarchy {
@@ -32,6 +33,8 @@ struct GridHierarchy {
 
 /// \param plate         its rigidity is not read
 /// \param unitRigidity  D0 [N m] that the kernels' rigidity is relative to, > 0
-[[nodiscard]] GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity);
+/// \param coarsest      cells along a side of the coarsest level, 8 to kMostCoarseCells
+[[nodiscard]] GridHierarchy gridHierarchy(const Plate& plate, double unitRigidity,
+                                          int coarsest = shared::kMostCoarseCells);
 
 } // namespace palp

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "compute_shaders/shared/coarse_band.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/compute/context.h"
@@ -29,7 +30,7 @@ struct Shapes {
     compute::Workgroup jumpTile{shared::kTile, shared::kTile, 1};
 };
 
-constexpr std::uint32_t kFewestOfRegions = 256; ///< invocations; each keeps up to five nodes
+constexpr std::uint32_t kFewestOfRegions = 256; ///< invocations; each keeps up to four nodes
 
 bool isHardware(const compute::Context& context)
 {
@@ -40,8 +41,9 @@ bool isHardware(const compute::Context& context)
 Shapes shapesFor(const compute::Context& context)
 {
     const compute::Workgroup most{std::bit_floor(std::min(context.limits().invocations, 1024U)), 1, 1};
-    if (isHardware(context)) return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, most, {28, 1, 9}, most, most};
-    return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, most, {8, 1, 9}, {64, 1, 1}, {kFewestOfRegions, 1, 1}};
+    const compute::Workgroup tail{std::min(most.x, 640U), 1, 1}; // a colour of its largest level has 561 places
+    if (isHardware(context)) return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, tail, {28, 1, 9}, most, most};
+    return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, tail, {8, 1, 9}, {64, 1, 1}, {kFewestOfRegions, 1, 1}};
 }
 
 /// Chooses the smoother. Where an operator row by row costs the same for all nodes as for half of them, half sweeps are
@@ -70,10 +72,13 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
         throw Error("the host has no fused passes: they spare dispatches, of which it has none");
     constexpr std::uint32_t kBuffers = 14; // of the kernel that takes most
     const compute::Limits   limits   = context.limits();
-    // The kernel of nested iteration has the most shared memory, 32.5 kB; the next ones, on the way down and for the inverse,
-    // have 25 and 23.
-    const bool fits = limits.sharedMemory >= sizeof(float) * (shared::kTailPool + shared::kTailSums) &&
-                      limits.buffers >= kBuffers && limits.invocations >= kFewestOfRegions;
+    // The kernel of the inverse has the most shared memory, 23 kB; those of the way down and of nested iteration have 21 and
+    // 14 kB.
+    constexpr std::size_t kShared =
+        sizeof(double) * ((shared::kColumnsTogether + shared::kMostHalfBand) * (shared::kMostHalfBand + 1) +
+                          2 * shared::kMostCoarseNodes);
+    const bool fits =
+        limits.sharedMemory >= kShared && limits.buffers >= kBuffers && limits.invocations >= kFewestOfRegions;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
     return schedule == Schedule::fused ||
            (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
@@ -147,6 +152,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
     }
     if (chosen(smoother, schedule, context) == Smoother::exactRims) all_->rims.emplace(rimKernels(context, host, f64));
     if (!isFused(context, schedule, all_->smoothing.by)) return;
+    all_->coarsestCells = shared::kTailCoarseCells;
     all_->fused.emplace(fusedKernels(context, shapes, f64));
     if (coarse && !f64) {
         all_->fused->prepareEnd   = compute::Kernel(context, kernels::prepareEnd<double>(), shapes.factor);

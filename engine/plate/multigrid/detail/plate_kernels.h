@@ -2,6 +2,7 @@
 #include <array>
 #include <optional>
 
+#include "compute_shaders/shared/coarse_band.h"
 #include "engine/compute/kernel.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 
@@ -42,6 +43,11 @@ struct PlateKernels::All {
     bool      coarseDoubles = false; ///< on the coarsest level
     Smoothing smoothing;
     int       together = 1; ///< loads whose numbers lie side by side at every node of a field
+
+    /// Cells along a side of the coarsest level. Where a dispatch costs more than what it computes, a factor of 17 x 17 nodes
+    /// takes longer than all else on a new map of 129 x 129, and half as many cells a side cost the cycle next to nothing; one
+    /// core makes that factor in the time of three sweeps, and the level between would cost more.
+    int coarsestCells = shared::kMostCoarseCells;
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_FUSED(name, spirv, source, define, Push, buffers, shape)
