@@ -25,7 +25,7 @@ void write(int at, real value) { w[at] = float(value); }
 #endif
 
 #ifdef PALPATE_INVERTS
-// Columns of L, many at a time: of hundreds of workgroups that wait for their own, column after column, memory would be
+// Columns of L, many at a time: of many workgroups that wait for their own, column after column, memory would be
 // the time.
 const int kTogether = kColumnsTogether;
 shared real columns[(kTogether + kMostHalfBand) * (kMostHalfBand + 1)];

@@ -124,6 +124,34 @@ TEST_F(CommandListTest, AnIndirectDispatchTakesItsGroupsFromABuffer)
     EXPECT_EQ(result(), std::vector<float>(kSide * kSide, 0.0f)) << "no groups, no writes";
 }
 
+TEST_F(CommandListTest, AnIndirectDispatchSeesGroupsThatChangeWithinTheList)
+{
+    const compute::Buffer some(context(), "some", 12, compute::Intent::upload),
+        none(context(), "none", 12, compute::Intent::upload),
+        arguments(context(), "arguments", 12, compute::Intent::processor);
+    std::ranges::copy(std::initializer_list<std::uint32_t>{groups_.x, groups_.y, 1}, some.as<std::uint32_t>().begin());
+    std::ranges::fill(none.as<std::uint32_t>(), 0U);
+    compute::CommandList list(context());
+    list.copy(up_, source_);
+    list.fill(sum_, 0);
+    const auto dispatchTwice = [&] {
+        for (int n = 0; n < 2; ++n) list.dispatchIndirect(accumulate_, {source_, sum_}, push_, arguments, 0);
+    };
+    list.copy(some, arguments);
+    dispatchTwice();
+    list.copy(none, arguments);
+    dispatchTwice();
+    list.copy(some, arguments);
+    dispatchTwice();
+    list.fill(arguments, 0);
+    dispatchTwice();
+    list.copy(sum_, down_);
+    list.end();
+
+    context().run(list);
+    EXPECT_EQ(result(), roughPlane(kSide, kSide)) << "four quarters";
+}
+
 TEST_F(CommandListTest, PartOfABufferCanBeBound)
 {
     const compute::Buffer wide(context(), "wide", 256 + kBytes, compute::Intent::processor);

@@ -25,7 +25,7 @@ public:
 enum class Schedule {
     automatic,  ///< fused on hardware, pass by pass in software
     passByPass, ///< 7 to 11 dispatches per level: nothing is computed twice
-    fused       ///< 3 per level, and one for all levels of up to 32 cells together: few dispatches to wait for
+    fused       ///< 2 per level, and one for all levels of up to 32 cells together: few dispatches to wait for
 };
 constexpr auto namesOf(Schedule)
 {

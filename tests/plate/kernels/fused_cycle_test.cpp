@@ -182,7 +182,7 @@ protected:
     static std::vector<compute::Workgroup> shapesOfTail()
     {
         std::vector<compute::Workgroup> shapes;
-        for (const std::uint32_t lanes : {640U, 256U})
+        for (const std::uint32_t lanes : {640U, 512U, 256U})
             if (lanes <= context().limits().invocations) shapes.push_back({lanes, 1, 1});
         return shapes;
     }
@@ -525,8 +525,8 @@ TEST(TailLayout, TakesTheLevelsOfUpTo32CellsAndFitsTheKernel)
     EXPECT_EQ(layoutOf(32, 32, 1).first, 0u);
     EXPECT_EQ(layoutOf(33, 33, 1).first, 1u);
     for (const double spacingX : {0.1, 0.4, 0.7, 1.0, 1.6, 3.0})
-        for (int cellsX = 8; cellsX <= 2048; cellsX += cellsX / 3)
-            for (int cellsZ = 8; cellsZ <= 2048; cellsZ += cellsZ / 3) {
+        for (int cellsX = 4; cellsX <= 2048; cellsX += std::max(1, cellsX / 3))
+            for (int cellsZ = 4; cellsZ <= 2048; cellsZ += std::max(1, cellsZ / 3)) {
                 const TailLayout layout = layoutOf(cellsX, cellsZ, spacingX);
                 ASSERT_LE(layout.levels.size(), std::size_t(shared::kTailLevels));
                 for (const shared::TailLevel& level : layout.levels) {

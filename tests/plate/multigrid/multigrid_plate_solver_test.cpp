@@ -145,7 +145,7 @@ TEST_F(MultigridPlate, AgreesWithTheReferenceSolverForEveryLaw)
         }
 }
 
-/// Sweeps and transfers are the same to the bit; only the coarsest level is solved in another way, by its inverse.
+/// Sweeps and transfers are the same to the bit; but there is a level more below, and the coarsest is solved by its inverse.
 TEST_F(MultigridPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
 {
     if (onHost()) GTEST_SKIP() << "the host does not fuse passes";
@@ -161,10 +161,10 @@ TEST_F(MultigridPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
         MultigridPlateSolver slow(context(), onePassEach, plate, settings), fast(context(), fused, plate, settings);
         const auto           expected = slow.solve(loads), found = fast.solve(loads);
         for (std::size_t n = 0; n < loads.size(); ++n)
-            EXPECT_LT(errorOf(found[n].deflection, expected[n].deflection), 2e-6)
-                << what; // within the tolerance of each
+            EXPECT_LT(errorOf(found[n].deflection, expected[n].deflection), 5e-6)
+                << what; // each is off by 1e-6 in the energy norm, its estimate by up to 2.2 times
         EXPECT_NEAR(*found[0].report.iterations, *expected[0].report.iterations, 1) << what;
-        if (plate.grid.cellsX >= 100) { // the level that fused passes have below the coarsest one costs little
+        if (plate.grid.cellsX >= 100) { // on small grids the further level is a large share
             const double step = *expected[0].report.workUnits / *expected[0].report.iterations;
             EXPECT_NEAR(*found[0].report.workUnits, *expected[0].report.workUnits, 1.5 * step) << what;
         }

@@ -58,13 +58,6 @@ compute::ContextSettings settingsOfTests()
     return {.processor = processorOfTests()};
 }
 
-/// Fused passes have more memory than what a plate's fields take.
-bool hasFusedPasses()
-{
-    compute::Context context(settingsOfTests());
-    return PlateKernels(context).all().fused.has_value();
-}
-
 TEST(PlateSolver, AProcessorThatIsLostIsReplacedByTheHost)
 {
     if (processorOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host is not lost";
@@ -97,9 +90,8 @@ TEST(PlateSolver, WhatDoesNotFitTheProcessorIsSolvedByTheHostAndWhatDoesReturns)
 {
     if (processorOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host has all memory of this machine";
     compute::ContextSettings settings = settingsOfTests();
-    // Doubles of 101 x 101 nodes; a rigidity, in floats, takes 55 kB there in its layout, and 90 kB of 129 x 129. Fused
-    // passes have the inverse of the coarsest level beside it, of up to 668 kB.
-    const int fits = hasFusedPasses() ? 300 : 100, beyond = hasFusedPasses() ? 320 : 128;
+    // Doubles of 101 x 101 nodes; a rigidity, in floats, takes 55 kB there in its layout, and 90 kB of 129 x 129.
+    const int fits = 100, beyond = 128;
     settings.most.buffer = sizeof(double) * std::size_t(fits + 1) * std::size_t(fits + 1);
     PlateSolver       solver(settings);
     const std::string processor = solver.name();
@@ -124,7 +116,7 @@ TEST(PlateSolver, LoadsThatDoNotFitTogetherAreSolvedInBatches)
 {
     if (processorOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host takes one after the other";
     compute::ContextSettings settings = settingsOfTests();
-    const int                cells    = hasFusedPasses() ? 192 : 64; // the inverse of the coarsest level fits, too
+    const int                cells    = 64;
     settings.most.buffer =
         3 * sizeof(double) * std::size_t(cells + 1) * std::size_t(cells + 1); // three loads in doubles
     PlateSolver                solver(settings), whole(settingsOfTests());

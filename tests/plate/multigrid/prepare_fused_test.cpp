@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "compute_shaders/shared/tail_level.h"
 #include "engine/compute/command_list.h"
 #include "engine/plate/multigrid/detail/plate_kernels.h"
 #include "engine/plate/multigrid/detail/plate_passes.h"
@@ -27,10 +28,10 @@ protected:
         bool                                    jumps = false, tooSoft = false;
     };
 
-    static Prepared prepareBy(Schedule schedule, const Plate& plate)
+    static Prepared prepareBy(Schedule schedule, const Plate& plate, int coarsest)
     {
         const PlateKernels kernels(context(), schedule);
-        PlatePasses        passes(context(), kernels.all(), gridHierarchy(plate, 1), 1);
+        PlatePasses        passes(context(), kernels.all(), gridHierarchy(plate, 1, coarsest), 1);
         const Binding&     finest = passes.levels[0].rigidity;
         Buffer             given(context(), "given", finest.bytes, Intent::upload);
         const auto&        D = plate.rigidity.values();
@@ -76,7 +77,7 @@ protected:
     static std::vector<Plate> plates()
     {
         using enum Edge;
-        return {roughPlate(9, 12, {clamped, clamped, clamped, clamped}),                       // one level
+        return {roughPlate(9, 12, {clamped, clamped, clamped, clamped}),                       // one level or two
                 onRoughBed(roughPlate(17, 13, {supported, free, clamped, supported}, 1, 1.3)), // odd cells
                 roughPlate(64, 64, {clamped, clamped, clamped, clamped}),                      // three
                 onRoughBed(roughPlate(131, 75, {free, clamped, free, free})),                  // more, odd ones
@@ -91,23 +92,27 @@ TEST_F(PrepareFused, FourDispatchesPrepareTheSameBits)
     if (onHost()) GTEST_SKIP() << "the host has no such kernels";
     if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
     if (!context().bitExact()) GTEST_SKIP() << "a driver may fuse the sums of each kernel as it likes";
-    for (const Plate& plate : plates()) {
-        SCOPED_TRACE(describe(plate));
-        const Prepared one = prepareBy(Schedule::fused, plate), each = prepareBy(Schedule::passByPass, plate);
-        EXPECT_TRUE(one.rigidity == each.rigidity);
-        EXPECT_TRUE(one.divisor == each.divisor);
-        EXPECT_TRUE(one.tiles == each.tiles);
-        EXPECT_EQ(one.jumps, each.jumps);
-        EXPECT_EQ(one.tooSoft, each.tooSoft);
-    }
+    for (const Plate& plate : plates())
+        for (const int coarsest : {shared::kTailCoarseCells, shared::kMostCoarseCells}) {
+            SCOPED_TRACE(describe(plate) + ", at most " + std::to_string(coarsest) + " on the coarsest level");
+            const Prepared one  = prepareBy(Schedule::fused, plate, coarsest),
+                           each = prepareBy(Schedule::passByPass, plate, coarsest);
+            EXPECT_TRUE(one.rigidity == each.rigidity);
+            EXPECT_TRUE(one.divisor == each.divisor);
+            EXPECT_TRUE(one.tiles == each.tiles);
+            EXPECT_EQ(one.jumps, each.jumps);
+            EXPECT_EQ(one.tooSoft, each.tooSoft);
+        }
 }
 
 /// Where the rigidity jumps the cycle has the same sweeps in both schedules, but ends on another coarsest level: the answers
-/// agree as far as the steps go, to a few times the tolerance of the energy norm in the largest deflection.
+/// agree as far as the steps go. Each is off by at most the tolerance in the energy norm; a deflection at one end of a beam by
+/// some 1.1 times as much, relative to the largest one: 2.3 tolerances between the two, here 3.
 TEST_F(PrepareFused, PlatesThatJumpGetTheSameAnswerByEither)
 {
     if (onHost()) GTEST_SKIP() << "the host has no such kernels";
     if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
     using enum Edge;
     const PlateKernels fused(context(), Schedule::fused), each(context(), Schedule::passByPass);
     for (const Plate& plate : {onRoughBed(roughPlate(37, 22, {free, clamped, free, free})),
@@ -115,7 +120,7 @@ TEST_F(PrepareFused, PlatesThatJumpGetTheSameAnswerByEither)
         SCOPED_TRACE(describe(plate));
         NodeField load(plate.grid);
         load(plate.grid.cellsX / 2, plate.grid.cellsZ / 3) = 1;
-        const MultigridPlateSolver::Settings settings{.tolerance = 1e-5};
+        const MultigridPlateSolver::Settings settings{.tolerance = context().processor().float64 ? 1e-5 : 1e-4};
         const PlateSolution                  a = MultigridPlateSolver(context(), fused, plate, settings).solve(load),
                             b                  = MultigridPlateSolver(context(), each, plate, settings).solve(load);
         double apart = 0, largest = 0;

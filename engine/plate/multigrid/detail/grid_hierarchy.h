@@ -16,7 +16,7 @@ namespace palp {
 
 /// A grid and coarser and coarser ones over the same rectangle, with the multigrid kernels' data of each.
 ///
-/// A step halves the cells along both axes (rounding up), until no side has more than `coarsest` ones. An axis is not
+/// A step halves the cells along both axes (rounding up), until no side has more than `coarsest` cells. An axis is not
 /// halved while its spacing is 1.5 times the other's or more, because point relaxation does not smooth along it, or
 /// when it has only 4 to 7 cells.
 struct GridHierarchy {

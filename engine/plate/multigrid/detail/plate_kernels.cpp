@@ -152,6 +152,7 @@ PlateKernels::PlateKernels(compute::Context& context, Schedule schedule, Precisi
     }
     if (chosen(smoother, schedule, context) == Smoother::exactRims) all_->rims.emplace(rimKernels(context, host, f64));
     if (!isFused(context, schedule, all_->smoothing.by)) return;
+    static_assert(shared::kTailCoarseCells <= shared::kMostCoarseCells);
     all_->coarsestCells = shared::kTailCoarseCells;
     all_->fused.emplace(fusedKernels(context, shapes, f64));
     if (coarse && !f64) {
