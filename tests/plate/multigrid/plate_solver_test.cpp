@@ -10,7 +10,6 @@
 #include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
-#include "engine/plate/multigrid/detail/plate_kernels.h"
 #include "engine/plate/multigrid/detail/worst.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/support/shader_fixture.h"
