@@ -27,6 +27,7 @@ finish() {
 }
 trap finish EXIT
 
+long=120 # [s] for what takes a second: an instrumented program beside others has needed more than 20
 failed=0
 fail() { echo "FAILED: $*"; failed=1; }
 # waits until something holds: description, seconds, command
@@ -44,8 +45,8 @@ until_() {
 # waits until the program has ended, in good order: description
 ended() {
     n=0
-    while kill -0 "$program" 2>/dev/null && [ $n -lt 200 ]; do n=$((n + 1)); sleep 0.1; done
-    kill -0 "$program" 2>/dev/null && { fail "$1 does not end it within 20 s"; kill -9 "$program"; return; }
+    while kill -0 "$program" 2>/dev/null && [ $n -lt $((long * 10)) ]; do n=$((n + 1)); sleep 0.1; done
+    kill -0 "$program" 2>/dev/null && { fail "$1 does not end it within $long s"; kill -9 "$program"; return; }
     wait "$program"
     status=$?
     program=
@@ -56,9 +57,11 @@ start() {
     : >err
     "$palpate" view "$@" --size 640x480 --validate --json --solver host >out 2>>err &
     program=$!
-    until_ 'a window' 60 shows || exit 1
+    until_ 'a window' $long shows || exit 1
     window=$(xdotool search --onlyvisible --name Palpate | head -1)
+    until_ 'its object' $long titled ' - Palpate' || exit 1 # keys and files before that find nothing to act on
 }
+titled() { xdotool getwindowname "$window" | grep -qF -- "$1"; }
 shows() { [ -n "$(xdotool search --onlyvisible --name Palpate)" ]; }
 
 start sample:skin --points 4000
@@ -73,7 +76,7 @@ xdotool click 4 click 5
 for key in v c l o s g j x t 1 3 7 f r F1 F1; do xdotool key --window "$window" $key sleep 0.1; done
 # touch, recorded
 xdotool key --window "$window" F5
-until_ 'a recording' 20 test -s session-0001/ticks.npy
+until_ 'a recording' $long test -s session-0001/ticks.npy
 xdotool mousemove --window "$window" 420 260 keydown space sleep 1 mousemove --window "$window" 440 260 sleep 1 \
     click 5 sleep 0.5 keyup space
 xdotool key --window "$window" F7 sleep 0.2 key --window "$window" F5 sleep 0.5
@@ -83,16 +86,16 @@ xdotool keydown space sleep 0.7 key F5 sleep 1.5 keyup space sleep 0.7 key F5 sl
 xdotool key --window "$window" b sleep 0.2 mousemove --window "$window" 420 260 mousedown 1 sleep 0.2 \
     mousemove --window "$window" 440 270 sleep 0.3 mouseup 1 sleep 0.2 key --window "$window" ctrl+z sleep 0.2 \
     key --window "$window" ctrl+y sleep 0.2 key --window "$window" ctrl+s
-until_ 'a painted cloud' 20 test -s skin-painted-0001.ply
+until_ 'a painted cloud' $long test -s skin-painted-0001.ply
 # pictures, without panels and with them
 xdotool key --window "$window" p
-until_ 'a picture' 40 test -s palpate-0001.png
+until_ 'a picture' $long test -s palpate-0001.png
 xdotool key --window "$window" shift+p
-until_ 'a picture of the window' 40 test -s palpate-0002.png
+until_ 'a picture of the window' $long test -s palpate-0002.png
 # replay what was recorded, resize, close
 xdotool key --window "$window" F6 sleep 2
 xdotool windowsize "$window" 800 600 sleep 1 key --window "$window" shift+p
-until_ 'a picture after the replay' 40 test -s palpate-0003.png
+until_ 'a picture after the replay' $long test -s palpate-0003.png
 [ "$(od -An -tu1 -j16 -N8 palpate-0003.png | tr -s ' ')" = ' 0 0 3 32 0 0 2 88' ] || fail 'after resizing a picture has not 800 x 600 px'
 xdotool key --window "$window" Escape sleep 0.2
 kill -0 "$program" 2>/dev/null || fail 'Escape must not quit'
@@ -121,12 +124,11 @@ recorded_as() { # description, name of the cloud
     number=$((number + 1))
     session=session-000$number
     xdotool key --window "$window" F5
-    until_ "$1: a recording" 20 test -s $session/ticks.npy
+    until_ "$1: a recording" $long test -s $session/ticks.npy
     grep -q -- "$2" $session/session.json || { fail "$1: not what is shown"; grep -o '"cloud"[^,]*' $session/session.json; }
     xdotool key --window "$window" F5 sleep 0.3
 }
 fall() { "$client" "$window" drop "$@" || fail "cannot let $* fall"; }
-titled() { xdotool getwindowname "$window" | grep -qF -- "$1"; }
 number=2
 mkdir "files of 50%"
 awful="files of 50%/Ann's pad #1 ä.ply"
@@ -139,24 +141,24 @@ mkdir empty
 start sample:skin --points 1500
 sleep 1
 fall "$awful"
-until_ 'an awful path' 20 titled "Ann's pad #1"
+until_ 'an awful path' $long titled "Ann's pad #1"
 recorded_as 'a path with blanks, an apostrophe, a percent sign and an umlaut' "Ann's pad #1"
 fall lobe.json
-until_ 'a scene' 20 titled lobe.json
+until_ 'a scene' $long titled lobe.json
 recorded_as 'a scene' sample:ear-lobe
 fall plain.ply
-until_ 'a cloud' 20 titled plain.ply
+until_ 'a cloud' $long titled plain.ply
 recorded_as 'a cloud' plain.ply
 [ -s err ] && { fail 'good files were complained of:'; cat err; }
 for bad in text.ply hostile.ply empty; do
     fall $bad
-    until_ "a sentence on $bad" 10 says "palpate: $bad\|palpate: .*/$bad"
+    until_ "a sentence on $bad" $long says "palpate: $bad\|palpate: .*/$bad"
     [ "$(wc -l <err)" -eq 1 ] || { fail "$bad: not one sentence"; cat err; }
     : >err
 done
 recorded_as 'the object stays after bad files' plain.ply
 fall session-0001
-until_ 'a session' 20 titled session-0001
+until_ 'a session' $long titled session-0001
 # a hand that moved for some seconds: nothing can be recorded while it is replayed
 xdotool key --window "$window" F5 sleep 0.3
 [ -e session-000$((number + 1)) ] && fail 'a session is not replayed: it is being recorded'
@@ -170,7 +172,7 @@ start sample:skin --points 1500
 sleep 1
 number=$((number + 1))
 xdotool windowfocus --sync "$window" key --window "$window" F5
-until_ 'the last recording' 20 test -s session-000$number/ticks.npy
+until_ 'the last recording' $long test -s session-000$number/ticks.npy
 xdotool mousemove --window "$window" 420 260 keydown space sleep 1
 kill -9 "$server"
 n=0
