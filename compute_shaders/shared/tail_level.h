@@ -10,8 +10,8 @@ namespace palp::shared {
 
 // The sizes of the kernel's shared arrays and loops: levels of 32, 16 and 8 cells per side, of which each of 640
 // invocations has at most one node of a colour. A level of 64 takes one workgroup as long as all smaller ones together,
-// and many workgroups half of that.
-const int kTailPool   = 3400;    // numbers in shared memory, 14 kB: of 32 x 32 cells that are halved along one axis first
+// and many workgroups half of that. The pool holds the levels of 32 x 32 cells that are halved along one axis first.
+const int kTailPool   = 3400;    // numbers in shared memory, 14 kB
 const int kTailSums   = 128;     // the same for sums, of which a workgroup has a multiple of invocations
 const int kTailNodes  = 33 * 33; // of a level
 const int kTailHalf   = 33 * 17; // nodes of one colour of a level, counted as columns times half rows rounded up

@@ -145,7 +145,7 @@ TEST_F(MultigridPlate, AgreesWithTheReferenceSolverForEveryLaw)
         }
 }
 
-/// Sweeps and transfers are the same to the bit; but there is a level more below, and the coarsest is solved by its inverse.
+/// Sweeps and transfers are the same to the bit; but there is a level more below, whose answer comes by its inverse.
 TEST_F(MultigridPlate, FusedPassesTakeTheSameStepsToTheSameAnswer)
 {
     if (onHost()) GTEST_SKIP() << "the host does not fuse passes";

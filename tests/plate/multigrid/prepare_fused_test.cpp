@@ -105,9 +105,9 @@ TEST_F(PrepareFused, FourDispatchesPrepareTheSameBits)
         }
 }
 
-/// Where the rigidity jumps the cycle has the same sweeps in both schedules, but ends on another coarsest level: the answers
-/// agree as far as the steps go. Each is off by at most the tolerance in the energy norm; a deflection at one end of a beam by
-/// some 1.1 times as much, relative to the largest one: 2.3 tolerances between the two, here 3.
+/// Where the rigidity jumps the cycle has the same sweeps in both schedules, but ends on another coarsest level: the
+/// answers agree as far as the steps go. Each is off by at most the tolerance in the energy norm; a deflection at one
+/// end of a beam by some 1.1 times as much, relative to the largest one: 2.3 tolerances between the two, here 3.
 TEST_F(PrepareFused, PlatesThatJumpGetTheSameAnswerByEither)
 {
     if (onHost()) GTEST_SKIP() << "the host has no such kernels";

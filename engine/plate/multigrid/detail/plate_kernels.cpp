@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "compute_shaders/shared/coarse_band.h"
+#include "compute_shaders/shared/region_layout.h"
 #include "compute_shaders/shared/tail_level.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/compute/context.h"
@@ -72,13 +73,14 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
         throw Error("the host has no fused passes: they spare dispatches, of which it has none");
     constexpr std::uint32_t kBuffers = 14; // of the kernel that takes most
     const compute::Limits   limits   = context.limits();
-    // The kernel of the inverse has the most shared memory, 23 kB; those of the way down and of nested iteration have 21 and
-    // 14 kB.
-    constexpr std::size_t kShared =
+    // coarse_solve.comp, where it inverts, and plate_down.comp with one sweep have the most shared memory, 23 and 21 kB.
+    constexpr int         kLeftSide = shared::kRegion - 2 * shared::kRimPerSweep;
+    constexpr std::size_t kInverts =
         sizeof(double) * ((shared::kColumnsTogether + shared::kMostHalfBand) * (shared::kMostHalfBand + 1) +
                           2 * shared::kMostCoarseNodes);
-    const bool fits =
-        limits.sharedMemory >= kShared && limits.buffers >= kBuffers && limits.invocations >= kFewestOfRegions;
+    constexpr std::size_t kGoesDown = sizeof(float) * (2 * shared::kRegion * shared::kRegion + kLeftSide * kLeftSide);
+    const bool            fits = limits.sharedMemory >= std::max(kInverts, kGoesDown) && limits.buffers >= kBuffers &&
+                      limits.invocations >= kFewestOfRegions;
     PALP_EXPECT(fits || schedule != Schedule::fused, "the processor's workgroups are too small for fused passes");
     return schedule == Schedule::fused ||
            (schedule == Schedule::automatic && fits && isHardware(context) && smoother == Smoother::redBlack);
