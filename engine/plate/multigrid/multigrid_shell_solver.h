@@ -62,8 +62,8 @@ struct ShellAnswer {
 /// The matrix is indefinite, so that conjugate gradients minimise nothing; the products of their formulas may be
 /// negative, and steps are as many as the plate takes, or two more (7 at most to 1e-4 in the compliance, for discs of
 /// 100), however many cells there are and however curved it is. They start from nested iteration. The bits are the same
-/// on every instruction set. Beyond sharp contrasts of some thousands, such as of nodes that stand for nothing, they may
-/// not converge, and the report says so.
+/// on every instruction set. Beyond sharp contrasts of some thousands, such as of nodes that stand for nothing, they
+/// may not converge, and the report says so.
 /// \thread one at a time
 /// \source Marguerre 1938; Brandt & Dinar 1979, collective relaxation; Hestenes & Stiefel 1952
 class MultigridShellSolver {

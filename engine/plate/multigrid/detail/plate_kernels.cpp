@@ -73,7 +73,7 @@ bool isFused(const compute::Context& context, Schedule schedule, Smoother smooth
         throw Error("the host has no fused passes: they spare dispatches, of which it has none");
     constexpr std::uint32_t kBuffers = 14; // of the kernel that takes most
     const compute::Limits   limits   = context.limits();
-    // coarse_solve.comp, where it inverts, and plate_down.comp with one sweep have the most shared memory, 23 and 21 kB.
+    // coarse_solve.comp, where it inverts, and plate_down.comp with one sweep have most shared memory, 23 and 21 kB.
     constexpr int         kLeftSide = shared::kRegion - 2 * shared::kRimPerSweep;
     constexpr std::size_t kInverts =
         sizeof(double) * ((shared::kColumnsTogether + shared::kMostHalfBand) * (shared::kMostHalfBand + 1) +

@@ -45,8 +45,8 @@ struct PlateKernels::All {
     int       together = 1; ///< loads whose numbers lie side by side at every node of a field
 
     /// Cells along a side of the coarsest level. On a GPU the factor of 17 x 17 nodes takes longer than all else on a
-    /// new map of 129 x 129, and half as many cells a side cost the cycle next to nothing. One core makes that factor in
-    /// 0.02 ms, and the level between would cost each table more.
+    /// new map of 129 x 129, and half as many cells a side cost the cycle next to nothing. One core makes that factor
+    /// in 0.02 ms, and the level between would cost each table more.
     int coarsestCells = shared::kMostCoarseCells;
 #define PALPATE_FLOATS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
 #define PALPATE_REALS(name, spirv, source, define, Push, buffers, shape) compute::Kernel name;
