@@ -65,15 +65,12 @@ void printProbes(const FitOptions& o, const fit::ProbesFit& all)
                 all.probes.size());
     std::printf("%-10s %-34s %-34s %9s %9s %9s %9s  %s\n", "probe", "K", "b", "residual", "linear", "Hertz", "cubic",
                 "relaxation");
-    const auto interval = [](const fit::Estimate& e, const char* unit) {
-        return formatQuantity(e.value, unit) + " (" + formatQuantity(e.low, unit) + " to " +
-               formatQuantity(e.high, unit) + ")";
-    };
     for (const fit::ProbeFit& p : all.probes)
-        std::printf("%-10s %-34s %-34s %9s %9s %9s %9s  %s\n", p.name.c_str(), interval(p.stiffness, "N/m").c_str(),
-                    interval(p.stiffening, "1/m").c_str(), report::percent(p.residual).c_str(),
-                    report::percent(p.others[0].residual).c_str(), report::percent(p.others[1].residual).c_str(),
-                    report::percent(p.others[2].residual).c_str(), relaxationText(p.relaxation).c_str());
+        std::printf("%-10s %-34s %-34s %9s %9s %9s %9s  %s\n", p.name.c_str(),
+                    fit::intervalText(p.stiffness, "N/m").c_str(), fit::intervalText(p.stiffening, "1/m").c_str(),
+                    report::percent(p.residual).c_str(), report::percent(p.others[0].residual).c_str(),
+                    report::percent(p.others[1].residual).c_str(), report::percent(p.others[2].residual).c_str(),
+                    relaxationText(p.relaxation).c_str());
     std::printf("\nmedian residual %s of the range of the forces; linear %s, Hertz %s, cubic %s\n",
                 report::percent(all.medianResidual()).c_str(), report::percent(all.medianResidual("linear")).c_str(),
                 report::percent(all.medianResidual("Hertz")).c_str(),

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 #include "engine/force/relaxing_contact.h"
 #include "engine/tools/fit/least_squares.h"
 
@@ -183,6 +184,15 @@ double median(std::vector<double> values)
 }
 
 } // namespace
+
+std::string intervalText(const Estimate& estimate, std::string_view siUnit)
+{
+    const std::string value = formatQuantity(estimate.value, siUnit), low = formatQuantity(estimate.low, siUnit),
+                      high = formatQuantity(estimate.high, siUnit);
+    if (low != value || high != value) return value + " (" + low + " to " + high + ")";
+    const double half = std::max(estimate.high - estimate.value, estimate.value - estimate.low);
+    return value + " (+- " + shortNumber(half > 0 ? 100 * half / std::abs(estimate.value) : 0, 2) + " %)";
+}
 
 ProbeFit fitProbe(const Probe& probe)
 {

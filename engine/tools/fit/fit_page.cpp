@@ -15,12 +15,6 @@ using report::percent;
 using report::Section;
 using report::Table;
 
-std::string text(const Estimate& e, std::string_view unit)
-{
-    return formatQuantity(e.value, unit) + " (" + formatQuantity(e.low, unit) + " to " + formatQuantity(e.high, unit) +
-           ")";
-}
-
 /// Returns the measured forces and those of the laws: over time where depths do not tell the rows apart.
 Figure plotOf(const Probe& probe, const ProbeFit& fit)
 {
@@ -34,9 +28,9 @@ Figure plotOf(const Probe& probe, const ProbeFit& fit)
     settings.x =
         probe.time.empty() ? PlotAxis{"depth", "m", Scale::linear, {}} : PlotAxis{"time", "s", Scale::linear, {}};
     settings.y          = {"force", "N", Scale::linear, {}};
-    std::string caption = "K " + text(fit.stiffness, "N/m") + ", b " + text(fit.stiffening, "1/m");
+    std::string caption = "K " + intervalText(fit.stiffness, "N/m") + ", b " + intervalText(fit.stiffening, "1/m");
     for (std::size_t n = 0; n < fit.relaxation.count; ++n)
-        caption += ", g " + report::fixed(fit.shares[n].value, 2) + " in " + text(fit.times[n], "s");
+        caption += ", g " + report::fixed(fit.shares[n].value, 2) + " in " + intervalText(fit.times[n], "s");
     return {caption + "; leaves " + percent(fit.residual) + " of the range of the forces",
             linePlotSvg(series, settings)};
 }
@@ -48,7 +42,7 @@ Table tableOf(const ProbesFit& fit)
                 {}};
     for (const TriedLaw& law : fit.probes.front().others) table.headings.push_back(law.name);
     for (const ProbeFit& p : fit.probes) {
-        std::vector<std::string> row{p.name, text(p.stiffness, "N/m"), text(p.stiffening, "1/m"),
+        std::vector<std::string> row{p.name, intervalText(p.stiffness, "N/m"), intervalText(p.stiffening, "1/m"),
                                      relaxationText(p.relaxation), percent(p.residual)};
         for (const TriedLaw& law : p.others) row.push_back(percent(law.residual));
         row.resize(table.headings.size());

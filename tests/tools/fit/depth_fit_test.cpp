@@ -114,6 +114,14 @@ TEST(DepthFit, WhatDoesNotRelaxGetsNoTerm)
     EXPECT_EQ(fit.relaxation.count, 0u) << relaxationText(fit.relaxation);
 }
 
+TEST(DepthFit, AnIntervalIsSaidWhereItIsNarrowerThanTheDigits)
+{
+    EXPECT_EQ(intervalText({300, 290, 310}, "N/m"), "300 N/m (290 N/m to 310 N/m)");
+    EXPECT_EQ(intervalText({300, 299.4, 300}, "N/m"), "300 N/m (299 N/m to 300 N/m)");
+    EXPECT_EQ(intervalText({300, 299.94, 300.06}, "N/m"), "300 N/m (+- 0.02 %)");
+    EXPECT_EQ(intervalText({0, 0, 0}, "1/m"), "0 1/m (+- 0 %)") << "a stiffening at its bound";
+}
+
 TEST(DepthFit, TogetherIsTheMedian)
 {
     std::mt19937_64       random(5);
