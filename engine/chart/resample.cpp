@@ -74,6 +74,11 @@ bool PatchWindow::holds(const ChartPoint& p) const noexcept
     return p.x >= corner.x && p.x <= corner.x + grid.sizeX() && p.z >= corner.z && p.z <= corner.z + grid.sizeZ();
 }
 
+ChartPoint PatchWindow::nearest(const ChartPoint& p) const noexcept
+{
+    return {std::clamp(p.x, corner.x, corner.x + grid.sizeX()), std::clamp(p.z, corner.z, corner.z + grid.sizeZ())};
+}
+
 double kernelReach(double pointSpacing, double nodeSpacing) noexcept
 {
     return kResamplingReach * resamplingWidth(pointSpacing, nodeSpacing);

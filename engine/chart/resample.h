@@ -23,6 +23,8 @@ struct PatchWindow {
     [[nodiscard]] static PatchWindow square(double size, int cells);
 
     [[nodiscard]] bool holds(const ChartPoint& p) const noexcept;
+    /// Returns the place in the window, edges included, that is nearest to p.
+    [[nodiscard]] ChartPoint nearest(const ChartPoint& p) const noexcept;
 };
 
 /// A quantity of each point, > 0.

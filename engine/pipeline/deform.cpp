@@ -15,6 +15,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/body_give.h"
+#include "engine/pipeline/detail/carried_along.h"
 #include "engine/pipeline/detail/coarser_grid.h"
 #include "engine/pipeline/detail/other_face.h"
 #include "engine/pipeline/detail/shell_patch.h"
@@ -679,6 +680,7 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
         const StageClock clock(patch.times.resample);
         curvePatch(patch, object, {laid.touched, std::span(patch.positions).first(patch.touched), laid.normals},
                    settings); //      and, if it is to be a shell, their curvature
+        carryAlong(patch, object, laid.normals);
         patch.bodyCompliance = bodyCompliance(patch, object, settings);
     }
     patch.gathered = std::move(ball.points);

@@ -101,13 +101,14 @@ std::vector<double> responsesAt(const Patch& patch, std::span<const ChartPoint> 
 {
     const PlateGrid     grid   = patch.window.grid;
     const ChartPoint    corner = patch.window.corner;
-    const double        sizeX = grid.sizeX(), sizeZ = grid.sizeZ(), perX = 1 / grid.spacingX, perZ = 1 / grid.spacingZ;
+    const ChartPoint    last{corner.x + grid.sizeX(), corner.z + grid.sizeZ()}; // as PatchWindow::holds() has it
+    const double        perX = 1 / grid.spacingX, perZ = 1 / grid.spacingZ;
     const std::size_t   stride = std::size_t(grid.nodesZ());
     const double* const field  = patch.response.values().data();
     std::vector<double> responses(places.size());
     for (std::size_t n = 0; n < places.size(); ++n) {
         const double x = places[n].x - corner.x, z = places[n].z - corner.z;
-        if (!(x >= 0 && x <= sizeX && z >= 0 && z <= sizeZ)) continue;
+        if (!(x >= 0 && places[n].x <= last.x && z >= 0 && places[n].z <= last.z)) continue;
         const int     i = std::min(int(x * perX), grid.cellsX - 1), j = std::min(int(z * perZ), grid.cellsZ - 1);
         const double  u = x * perX - i, v = z * perZ - j; // [spacings]
         const double* w    = field + std::size_t(i) * stride + std::size_t(j);

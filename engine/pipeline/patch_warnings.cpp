@@ -30,13 +30,17 @@ double largest(const NodeField& field)
     return *std::max_element(field.values().begin(), field.values().end());
 }
 
-/// Returns the largest value on the sides of the grid.
-double edgeDeflection(const NodeField& field)
+/// Returns the largest deflection per force at an edge of the window beyond which points stay [m/N]: within two spacings,
+/// or past those that carryAlong() moves with a free edge.
+double torn(const Patch& patch)
 {
-    double    most  = 0;
-    const int lastI = field.nodesX() - 1, lastJ = field.nodesZ() - 1;
-    for (int i = 0; i <= lastI; ++i) most = std::max({most, field(i, 0), field(i, lastJ)});
-    for (int j = 0; j <= lastJ; ++j) most = std::max({most, field(0, j), field(lastI, j)});
+    const double beside = patch.thickness + 2 * patch.spacing;
+    double       most   = 0;
+    for (const ChartPoint& p : patch.positions) {
+        if (patch.window.holds(p)) continue;
+        const ChartPoint edge = patch.window.nearest(p);
+        if (std::hypot(p.x - edge.x, p.z - edge.z) <= beside) most = std::max(most, responseAt(patch, edge));
+    }
     return most;
 }
 
@@ -210,7 +214,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         result.push_back("the points lie " + formatQuantity(patch.sphere.fit.misfit, "m") +
                          " (rms) off the fitted sphere, more than 5 % of the patch window: a smaller one follows the "
                          "surface better");
-    if (const double moving = edgeDeflection(patch.response) / largest(patch.response); moving > 0.02 && !whole)
+    if (const double moving = torn(patch) / largest(patch.response); moving > 0.02 && !whole)
         result.push_back("the patch window's edge moves by " + std::to_string(std::lround(100 * moving)) +
                          " % of the largest deflection and nothing moves beyond it: the deformed cloud is torn there");
     if (settings.foundation == 0 && !patch.curvature &&
