@@ -56,7 +56,7 @@ release_gate() {
     step install '' test_flavour "$top" -R '^install$'
     step package '' gate_packages
     step asan '' gate_flavour asan "$top/asan" -LE "$again" "$@"
-    step tsan '' gate_flavour tsan "$top/tsan" -LE "$again" -E "$one_thread" "$@"
+    step tsan '' gate_flavour tsan "$top/tsan" -LE "$again" -E "$without_tsan" "$@"
     step 'compiler' "$([ -n "$other" ] || echo 'there is no second compiler here')" gate_flavour other "$top/other" -LE shader "$@"
     step 'second driver' "$([ -n "$driver" ] || echo 'no --driver')" run_on_driver "$top"
     step performance "$([ -n "$release" ] || echo 'no --release')" python3 tests/performance_gate.py "$release" "$top/bin/palpate"

@@ -15,9 +15,9 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/body_give.h"
-#include "engine/pipeline/detail/carried_along.h"
 #include "engine/pipeline/detail/coarser_grid.h"
 #include "engine/pipeline/detail/other_face.h"
+#include "engine/pipeline/detail/places_followed.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/touched_surface.h"
 #include "engine/pipeline/detail/whole_object.h"
@@ -567,11 +567,11 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
 
 // --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
 
-/// Interpolates the response of the points bilinearly; outside the window nothing moves.
+/// Interpolates the response of the points bilinearly; what follows no place in the window does not move.
 void movePoints(Patch& patch)
 {
     const StageClock clock(patch.times.lift);
-    patch.pointResponse = responsesAt(patch, patch.positions);
+    patch.pointResponse = responsesAt(patch, patch.followed);
 }
 
 void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings)
@@ -680,7 +680,7 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
         const StageClock clock(patch.times.resample);
         curvePatch(patch, object, {laid.touched, std::span(patch.positions).first(patch.touched), laid.normals},
                    settings); //      and, if it is to be a shell, their curvature
-        carryAlong(patch, object, laid.normals);
+        patch.followed       = placesFollowed(patch, object, laid.normals);
         patch.bodyCompliance = bodyCompliance(patch, object, settings);
     }
     patch.gathered = std::move(ball.points);

@@ -123,16 +123,18 @@ void eachMoving(const Patch& patch, std::span<const glm::dvec3> positions,
 {
     for (std::size_t n = 0; n < patch.points.size(); ++n) {
         if (!patch.coarse) {
-            visit(patch.points[n], patch.positions[n], patch.pointResponse[n]);
+            visit(patch.points[n], patch.followed[n], patch.pointResponse[n]);
             continue;
         }
         // A point lies beside its coarse one in the chart as it does on the surface, seen along the chart's normal: they
         // are at most a cell apart.
         const glm::dvec3 middle = patch.coarse->object().positions()[patch.points[n]];
+        const ChartPoint at     = patch.followed[n];
+        const bool       inside = patch.window.holds(at);
         for (const std::uint32_t member : patch.coarse->membersOf(patch.points[n])) {
             const glm::dvec3 d = positions[member] - middle;
-            const ChartPoint place{patch.positions[n].x + glm::dot(d, patch.chart.frame.east),
-                                   patch.positions[n].z + glm::dot(d, patch.chart.frame.north)};
+            ChartPoint place{at.x + glm::dot(d, patch.chart.frame.east), at.z + glm::dot(d, patch.chart.frame.north)};
+            if (inside) place = patch.window.nearest(place); // a free edge takes along what its coarse point is among
             visit(member, place, responseAt(patch, place));
         }
     }

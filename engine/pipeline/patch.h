@@ -151,10 +151,12 @@ struct Patch {
     std::shared_ptr<const CoarseObject> coarse;
 
     std::vector<std::uint32_t> gathered;  ///< points around the contact
-    std::vector<std::uint32_t> points;    ///< those that may move, in the same order as the next two; first `touched`
+    std::vector<std::uint32_t> points;    ///< those that may move, in the same order as the next three; first `touched`
     std::vector<ChartPoint>    positions; ///< of `points` in the chart [m]
+    std::vector<ChartPoint> followed; ///< places in the chart whose deflections `points` have, see placesFollowed() [m]
     std::size_t touched = 0; ///< number of `points` on the touched surface, which alone give the plate its rigidity
-    std::vector<double> pointResponse; ///< deflection per force of `points` [m/N]; 0 outside the window
+    std::vector<double>
+        pointResponse; ///< deflection per force of `points` [m/N]; 0 where they follow no place in the window
 
     SolveReport report;
     StageTimes  times; ///< [ms]
@@ -194,8 +196,8 @@ void demandDeformed(const Patch& patch, const char* hint = "try a larger --windo
 /// Returns the same for many places, in a fraction of the time.
 [[nodiscard]] std::vector<double> responsesAt(const Patch& patch, std::span<const ChartPoint> places);
 
-/// Calls visit(point of the cloud, its place in the chart [m], its deflection per force [m/N]) for every point that may
-/// move.
+/// Calls visit(point of the cloud, the place in the chart that it follows [m], its deflection per force [m/N]) for every
+/// point that may move.
 /// \param positions  [m] of the cloud at rest
 void eachMoving(const Patch& patch, std::span<const glm::dvec3> positions,
                 const std::function<void(std::uint32_t, const ChartPoint&, double)>& visit);

@@ -30,13 +30,13 @@ double largest(const NodeField& field)
     return *std::max_element(field.values().begin(), field.values().end());
 }
 
-/// Returns the largest deflection per force at an edge of the window beyond which points stay [m/N]: within two spacings,
-/// or past those that carryAlong() moves with a free edge.
+/// Returns the largest deflection per force at an edge of the window beyond which points of the touched surface stay [m/N]:
+/// within two spacings, or past those that follow a free edge.
 double torn(const Patch& patch)
 {
-    const double beside = patch.thickness + 2 * patch.spacing;
+    const double beside = patch.thickness + 2 * patch.spacing + patch.plate.grid.spacingX;
     double       most   = 0;
-    for (const ChartPoint& p : patch.positions) {
+    for (const ChartPoint& p : std::span(patch.followed).first(patch.touched)) {
         if (patch.window.holds(p)) continue;
         const ChartPoint edge = patch.window.nearest(p);
         if (std::hypot(p.x - edge.x, p.z - edge.z) <= beside) most = std::max(most, responseAt(patch, edge));

@@ -61,6 +61,20 @@ TEST(Resample, RefusesWindowsAndPointsThatAreNone)
     }
 }
 
+TEST(Resample, TheNearestPlaceOfAWindowIsHeldByIt)
+{
+    const PatchWindow window{{24, 30, 1.0 / 24, 0.9 / 30}, {-0.5, -0.45}};
+    EXPECT_EQ(window.nearest({0.2, -0.3}).x, 0.2);
+    EXPECT_EQ(window.nearest({0.2, -0.3}).z, -0.3);
+    for (const double x : {-0.7, 0.1, 0.9})
+        for (const double z : {-2.0, 0.0, 0.5}) {
+            const ChartPoint inside = window.nearest({x, z});
+            EXPECT_TRUE(window.holds(inside)) << x << ", " << z;
+            EXPECT_NEAR(inside.x, std::clamp(x, -0.5, 0.5), 1e-15) << "rounding of the side";
+            EXPECT_NEAR(inside.z, std::clamp(z, -0.45, 0.45), 1e-15);
+        }
+}
+
 TEST(Resample, AWindowHoldsItsSidesAndNothingBeyond)
 {
     const PatchWindow window{{4, 8, 1, 0.25}, {-1, 2}}; // x from -1 to 3, z from 2 to 4

@@ -23,12 +23,26 @@ struct Object : SoftObject {
     }
 };
 
-TEST(Contact, IsThePointOfTheCloudNearestToThePlace)
+TEST(Contact, IsTheFootOfThePlaceWhereverThePointsLie)
 {
-    const Object  ellipsoid("ellipsoid");
-    const Contact contact = ellipsoid.touch({0, 0, 36e-3});
-    for (const glm::dvec3& p : ellipsoid.positions())
-        EXPECT_GE(glm::length(p - glm::dvec3(0, 0, 36e-3)), glm::length(contact.point - glm::dvec3(0, 0, 36e-3)));
+    const Object ellipsoid("ellipsoid");
+    // Points are 2.4 mm apart, and the surface bends by 0.1 mm over one and a half of that.
+    for (const glm::dvec3 direction : {glm::dvec3(0, 0, 1), glm::dvec3(1, 2, 3), glm::dvec3(-3, 1, 0.2)}) {
+        const glm::dvec3 axes(60e-3, 45e-3, 35e-3);
+        const glm::dvec3 foot   = direction / glm::length(direction / axes);
+        const glm::dvec3 normal = glm::normalize(foot / (axes * axes));
+        EXPECT_LT(glm::length(ellipsoid.touch(foot).point - foot), 0.15e-3);
+        EXPECT_LT(glm::length(ellipsoid.touch(foot + 4e-3 * normal).point - foot), 0.3e-3)
+            << "4 mm over it, where a normal that is off by two degrees counts";
+    }
+}
+
+TEST(Contact, BeyondTheRimOfASheetIsItsNearestPoint)
+{
+    const Object sheet("sheet");
+    const double side = sheet.cloud().bounds().high.x;
+    const auto   at   = sheet.touch({side + 4e-3, 0, 0}).point;
+    EXPECT_LE(at.x, side);
 }
 
 TEST(Contact, OutwardIsAwayFromAClosedObjectOnEverySide)

@@ -217,26 +217,52 @@ TEST(Pipeline, TwoThinSheetsBendTogether)
     EXPECT_GT(back, 100u) << "a lobe is thin: both skins move";
 }
 
+// With 300 000 points cells are so wide that the chart lays one point for some.
 TEST(Pipeline, NothingOfAFreeLobeStaysBehind)
 {
     const Sample&       sample = sampleNamed("ear-lobe");
-    const Object        lobe(makeSample(sample, sample.points, 1), sample.material);
     const PatchSettings settings{.window          = 28e-3,
                                  .cells           = 64,
                                  .footprintRadius = sample.footprintRadius,
                                  .edges           = {Edge::free, Edge::free, Edge::free, Edge::clamped}};
-    const Patch         patch   = lobe.touch({0, -4e-3, 1.5e-3}, {0, 0, 1}, settings);
-    const auto          moved   = deflections(lobe.cloud(), patch, 1);
-    const double        contact = patch.response(32, 32);
-    for (std::size_t n = 0; n < lobe.cloud().size(); ++n) {
-        const glm::dvec3& p = lobe.positions()[n];
-        if (p.y > 0) continue; // towards the root the window ends inside the lobe
-        const double below = responseAt(patch, {p.x, std::max(p.y + 4e-3, -14e-3)});
+    for (const std::size_t points : {sample.points, std::size_t(300'000)}) {
+        const Object lobe(makeSample(sample, points, 1), sample.material);
+        const Patch  patch   = lobe.touch({0, -4e-3, 1.5e-3}, {0, 0, 1}, settings);
+        const auto   moved   = deflections(lobe.cloud(), patch, 1);
+        const double contact = patch.response(32, 32);
+        ASSERT_EQ(patch.coarse != nullptr, points > sample.points);
+        double most = 0;
+        for (std::size_t n = 0; n < lobe.cloud().size(); ++n) {
+            const glm::dvec3& p = lobe.positions()[n];
+            if (p.y > 0) continue; // towards the root the window ends inside the lobe
+            most = std::max(most, std::abs(moved[n] - responseAt(patch, {p.x, std::max(p.y + 4e-3, -14e-3)})));
+        }
         // The unrolled faces are up to 3 % longer than what they cover; the rim, within a thickness of the window, goes
         // along with its edge.
-        EXPECT_NEAR(moved[n], below, 0.1 * contact) << "(" << p.x << ", " << p.y << ", " << p.z << ") m";
+        EXPECT_LT(most, 0.1 * contact) << points;
+        EXPECT_FALSE(warned(patch, settings, 0.1, "torn")) << points;
     }
-    EXPECT_FALSE(warned(patch, settings, 0.1, "torn"));
+}
+
+TEST(Pipeline, WallsAndFoldsKeepTheirOwnPlaces)
+{
+    // The top of a box and its wall, 0.5 mm apart, touched 8 mm from the edge: the wall is unrolled beside the top.
+    std::mt19937_64                        random(3);
+    std::uniform_real_distribution<double> along(-30e-3, 30e-3), across(0, 30e-3);
+    std::vector<glm::dvec3>                places;
+    for (int n = 0; n < 7200; ++n) {
+        places.push_back({along(random), -across(random), 0});
+        places.push_back({along(random), 0, -across(random)});
+    }
+    const Object box(PointCloud(places, std::vector<double>(places.size(), 1e6), StiffnessKind::modulus));
+    const Patch  patch = box.touch({0, -8e-3, 0}, {0, 0, 1}, kCoarse);
+    std::size_t  wall  = 0;
+    for (std::size_t k = 0; k < patch.touched; ++k) {
+        wall += box.positions()[patch.points[k]].z < -1e-3;
+        ASSERT_EQ(patch.followed[k].x, patch.positions[k].x);
+        ASSERT_EQ(patch.followed[k].z, patch.positions[k].z);
+    }
+    EXPECT_GT(wall, 200u) << "else nothing was unrolled";
 }
 
 TEST(Pipeline, EitherFaceOfTheLobeIsFeltWithItsOwnStiffness)
@@ -407,7 +433,10 @@ TEST(Pipeline, DensePointsFeelAsTheirEvenShareDoes)
 
 TEST(Pipeline, ResponsesOfManyPlacesAreThoseOfEach)
 {
-    const Patch             patch  = homogeneous("sheet", 16).touch({0, 0, 0}, {0, 0, 1}, kCoarse);
+    PatchSettings open             = kCoarse;
+    open.foundation                = 1e6;
+    open.edges                     = {Edge::free, Edge::free, Edge::free, Edge::free}; // the sides move as well
+    const Patch             patch  = homogeneous("sheet", 16).touch({0, 0, 0}, {0, 0, 1}, open);
     std::vector<ChartPoint> places = patch.positions;
     const double            half   = kCoarse.window / 2;
     for (const double x : {-half, half, -1.01 * half, 1.01 * half}) places.push_back({x, -x});

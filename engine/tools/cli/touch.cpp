@@ -233,7 +233,7 @@ std::string placeDoubt(const Scene& scene, const Patch& patch)
     if (!scene.place) return {};
     const double off = glm::length(patch.contact.point - *scene.place);
     if (off <= kExplained * patch.spacing) return {};
-    return "the place lies " + formatQuantity(off, "m") + " off the surface: its nearest point is touched";
+    return "the place lies " + formatQuantity(off, "m") + " off the surface: the nearest place on it is touched";
 }
 
 void touch(const TouchOptions& options)

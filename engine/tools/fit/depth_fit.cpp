@@ -190,6 +190,7 @@ std::string intervalText(const Estimate& estimate, std::string_view siUnit)
     const std::string value = formatQuantity(estimate.value, siUnit), low = formatQuantity(estimate.low, siUnit),
                       high = formatQuantity(estimate.high, siUnit);
     if (low != value || high != value) return value + " (" + low + " to " + high + ")";
+    if (!std::isfinite(estimate.value)) return value;
     const double half = std::max(estimate.high - estimate.value, estimate.value - estimate.low);
     return value + " (+- " + shortNumber(half > 0 ? 100 * half / std::abs(estimate.value) : 0, 2) + " %)";
 }

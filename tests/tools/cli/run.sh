@@ -109,7 +109,7 @@ holds 'deflection'
 good 'touch a file' touch skin.ply --place 0,0,0.0015 --window 40mm --cells 32
 holds 'felt stiffness'
 good 'a place off the surface' touch skin.ply --place 0,0,7mm --window 40mm --cells 32
-holds 'off the surface: its nearest point is touched'
+holds 'off the surface: the nearest place on it is touched'
 good 'touch as the paper' touch skin.ply --place 0,0,0.0015 --preset paper --window 40mm --cells 32 --json
 holds '"differences_from_paper": []'
 # agree KEY FILE FILE SHARE: the number of that key differs by no more than a share, here the tolerance that solves have;

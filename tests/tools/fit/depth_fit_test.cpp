@@ -1,6 +1,7 @@
 #include "engine/tools/fit/depth_fit.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -120,6 +121,8 @@ TEST(DepthFit, AnIntervalIsSaidWhereItIsNarrowerThanTheDigits)
     EXPECT_EQ(intervalText({300, 299.4, 300}, "N/m"), "300 N/m (299 N/m to 300 N/m)");
     EXPECT_EQ(intervalText({300, 299.94, 300.06}, "N/m"), "300 N/m (+- 0.02 %)");
     EXPECT_EQ(intervalText({0, 0, 0}, "1/m"), "0 1/m (+- 0 %)") << "a stiffening at its bound";
+    const double none = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ(intervalText({none, none, none}, "N/m").find('%'), std::string::npos) << "no number is exact";
 }
 
 TEST(DepthFit, TogetherIsTheMedian)
