@@ -152,8 +152,8 @@ typedef struct palpate_touch_result {
     double stiffening;           /**< b under the fingertip: felt_stiffness is that of the first touch [1/m] */
 } palpate_touch_result;
 
-/** Touches the object. place: [m]; the nearest point within a quarter of the patch window is touched. from: the side that
-   the finger comes from; NULL: away from the middle of the object. */
+/** Touches the object. place: [m]; its foot on the surface, within a quarter of the patch window, is touched. from: the
+   side that the finger comes from; NULL: away from the middle of the object. */
 PALPATE_API int palpate_touch(const palpate_object* object, const double place[3], const double from[3],
                               palpate_touch_result* result);
 /** Writes every point under a force [N] at a place: x, y, z of each [m]. */
