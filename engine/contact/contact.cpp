@@ -40,6 +40,7 @@ glm::dvec3 footOf(const SoftObject& object, const glm::dvec3& place, const Neigh
     const SurfaceSurvey& seen  = object.survey();
     if (seen.spacings().empty()) return point;
     const glm::dvec3 normal = seen.normal(nearest.point), off = place - point;
+    if (normal == glm::dvec3(0)) return point; // of points that span no plane
     const glm::dvec3 beside = off - glm::dot(off, normal) * normal;
     return glm::length(beside) <= kMost * seen.spacing(nearest.point) ? point + beside : point;
 }

@@ -244,25 +244,30 @@ TEST(Pipeline, NothingOfAFreeLobeStaysBehind)
     }
 }
 
-TEST(Pipeline, WallsAndFoldsKeepTheirOwnPlaces)
+TEST(Pipeline, TheWallAndTheBottomOfABoxKeepTheirOwnPlaces)
 {
-    // The top of a box and its wall, 0.5 mm apart, touched 8 mm from the edge: the wall is unrolled beside the top.
+    // Touched 4 mm from the edge of its top: the wall, 10 mm high, and the bottom are unrolled beside it. The bottom faces
+    // away from the finger, as the far face of a lobe does, but not that of a sheet of a millimetre.
     std::mt19937_64                        random(3);
-    std::uniform_real_distribution<double> along(-30e-3, 30e-3), across(0, 30e-3);
+    std::uniform_real_distribution<double> along(-30e-3, 30e-3), across(0, 30e-3), down(0, 10e-3);
     std::vector<glm::dvec3>                places;
     for (int n = 0; n < 7200; ++n) {
         places.push_back({along(random), -across(random), 0});
-        places.push_back({along(random), 0, -across(random)});
+        places.push_back({along(random), -across(random), -10e-3});
+        if (n % 3 == 0) places.push_back({along(random), 0, -down(random)});
     }
-    const Object box(PointCloud(places, std::vector<double>(places.size(), 1e6), StiffnessKind::modulus));
-    const Patch  patch = box.touch({0, -8e-3, 0}, {0, 0, 1}, kCoarse);
-    std::size_t  wall  = 0;
+    const Object box(PointCloud(places, std::vector<double>(places.size(), 1e6), StiffnessKind::modulus), {1e-3, 0.45});
+    const Patch  patch = box.touch({0, -4e-3, 0}, {0, 0, 1}, kCoarse);
+    std::size_t  wall = 0, bottom = 0;
     for (std::size_t k = 0; k < patch.touched; ++k) {
-        wall += box.positions()[patch.points[k]].z < -1e-3;
+        const double z = box.positions()[patch.points[k]].z;
+        wall += z < -1e-3 && z > -9e-3;
+        bottom += z == -10e-3;
         ASSERT_EQ(patch.followed[k].x, patch.positions[k].x);
         ASSERT_EQ(patch.followed[k].z, patch.positions[k].z);
     }
-    EXPECT_GT(wall, 200u) << "else nothing was unrolled";
+    EXPECT_GT(wall, 100u) << "else nothing was unrolled";
+    EXPECT_GT(bottom, 100u);
 }
 
 TEST(Pipeline, EitherFaceOfTheLobeIsFeltWithItsOwnStiffness)
