@@ -82,5 +82,34 @@ stand_in ctest "case \"\$*\" in *asan*) exit 8 ;; esac"
 check 'a gate with a failure' 1 'FAILED, status 8' env PALPATE_BUILD="$place/build" sh tests/run.sh --all
 check 'a gate goes on after a failure' 1 '== tsan: building' env PALPATE_BUILD="$place/build" sh tests/run.sh --all
 
+# A gate that was stopped or failed goes on where it was, if nothing has changed.
+stand_in git "[ \$1 != status ] || cat '$place/changes'; [ \$1 = status ] || cat '$place/commit'"
+echo one >"$place/commit"; : >"$place/changes"
+gate() { env PALPATE_BUILD="$place/build" sh tests/run.sh --all "$@"; }
+not_again() { if grep -q "^== $1\$" "$place/out"; then echo "FAILED: $1 was run again"; failed=$((failed + 1)); else passed=$((passed + 1)); fi; }
+check 'a gate that tells what has passed' 1 'FAILED, status 8' gate
+check 'what has passed is told' 1 'passed before' gate --resume
+not_again validation
+check 'what is looked at is built' 1 '== plain: building' gate --resume
+check 'what has failed is run again' 1 '== asan: building' gate --resume
+check 'the list of steps tells what has passed' 0 'would skip validation' gate --resume --dry-run
+check 'the list of steps without the option' 0 'would run validation:' gate --dry-run
+check 'chosen tests have passed nothing' 1 '== validation' gate --resume -- -R no
+echo 'M file' >"$place/changes"
+check 'a change has passed nothing' 1 '== validation' gate --resume
+check 'a change is said' 1 'the checkout is changed' gate --resume
+: >"$place/changes"; echo two >"$place/commit"
+check 'another commit has passed nothing' 1 '== validation' gate --resume
+echo one >"$place/commit"
+check 'without the option all is run' 1 '== validation' gate
+stand_in ctest 'exit 8'
+check 'a gate that fails' 1 'FAILED, status 8' gate
+check 'what failed last has not passed' 1 '== validation' gate --resume
+stand_in ctest "echo two >'$place/commit'"
+check 'a gate during which the commit changes' 1 '== validation' gate
+echo one >"$place/commit"
+check 'it has passed nothing' 1 '== validation' gate --resume
+check 'to resume what is no gate' 2 'expected with --all' sh tests/run.sh --resume
+
 echo "$passed passed, $failed failed"
 [ $failed -eq 0 ]

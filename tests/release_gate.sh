@@ -9,11 +9,22 @@ other_compiler() {
     done
 }
 
+# Which steps each commit has passed, a line each. A checkout that was changed has no commit, nor has a gate whose tests are
+# chosen by options.
+passed_file=$top/release_gate.txt commit=
+commit_here() { [ -n "$(git status --porcelain --untracked-files=normal 2>&1)" ] || git rev-parse HEAD; }
+
 table= gate_failed=0
-# step NAME REASON COMMAND...: runs the command unless there is a reason to skip it.
+# step NAME REASON COMMAND...: runs the command unless there is a reason to skip it, or --resume and it has passed.
 step() {
     name=$1 reason=$2
     shift 2
+    if [ -n "$resume" ] && [ -n "$commit" ] && before=$(grep "^$commit $name:" "$passed_file" 2>/dev/null); then
+        [ -z "$dry_run" ] || say "would skip $name, which has passed"
+        table="$table$(printf '%-14s %5s    %s' "$name" - "passed before, in ${before##*: }")
+"
+        return
+    fi
     if [ -n "$dry_run" ]; then
         say "would run $name: ${reason:+skipped, $reason: }$*"
         return
@@ -31,8 +42,11 @@ step() {
             result="FAILED, status $status" gate_failed=1
         fi
     fi
-    table="$table$(printf '%-14s %5d s  %s' "$name" $(($(date +%s) - began)) "$result")
+    took=$(($(date +%s) - began))
+    table="$table$(printf '%-14s %5d s  %s' "$name" $took "$result")
 "
+    [ "$result" != passed ] || [ -z "$commit" ] || [ "$(commit_here)" != "$commit" ] ||
+        printf '%s %s: %d s\n' "$commit" "$name" $took >>"$passed_file"
 }
 
 gate_flavour() { # NAME FOLDER CTEST-OPTIONS...
@@ -48,6 +62,13 @@ gate_packages() {
 # release_gate CTEST-OPTIONS...: all steps; the options go to the tests of the three builds.
 release_gate() {
     other=$(other_compiler)
+    [ $# -gt 0 ] || commit=$(commit_here)
+    if [ -n "$resume" ]; then
+        [ -n "$commit" ] || say '--resume: the checkout is changed or no clone, or tests are chosen by options: everything is run'
+        build_flavour plain "$top" || return 1 # what the steps after plain look at
+    elif [ -z "$dry_run" ]; then
+        rm -f "$passed_file" # what failed now may have passed before
+    fi
     slow='shader-validation|shader-gpu-assisted'
     step plain '' gate_flavour plain "$top" -LE "$slow" -E '^(fuzz|install|soak)$' "$@"
     step validation '' test_flavour "$top" -L "$slow" "$@"
@@ -58,6 +79,7 @@ release_gate() {
     step asan '' gate_flavour asan "$top/asan" -LE "$again" "$@"
     step tsan '' gate_flavour tsan "$top/tsan" -LE "$again" -E "$without_tsan" "$@"
     step 'compiler' "$([ -n "$other" ] || echo 'there is no second compiler here')" gate_flavour other "$top/other" -LE shader "$@"
+    commit= # a driver and a release that are named may be others than before
     step 'second driver' "$([ -n "$driver" ] || echo 'no --driver')" run_on_driver "$top"
     step performance "$([ -n "$release" ] || echo 'no --release')" python3 tests/performance_gate.py "$release" "$top/bin/palpate"
     [ -z "$dry_run" ] || return 0

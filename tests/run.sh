@@ -8,7 +8,7 @@ usage() {
     cat <<'TEXT'
 usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- CTEST-OPTIONS]
        sh tests/run.sh --driver ICD.json
-       sh tests/run.sh --all [--driver ICD.json] [--release PROGRAM]
+       sh tests/run.sh --all [--driver ICD.json] [--release PROGRAM] [--resume]
 
   (nothing)      every test, Release build in build/
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan; those that run the
@@ -16,6 +16,8 @@ usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- 
   --tsan         the same under ThreadSanitizer, in build/tsan, without the long ones that start no thread
   --all          what a release has to pass: those three builds, validation of the shaders, fuzzing's replay, a minute of the
                  soak, the other compiler, installation and packages; ends with a table
+  --resume       with --all: what this same commit has passed in a gate that was stopped or failed is not run again, but
+                 for the second driver and the performance
   --driver FILE  builds, and runs the tests of shaders and pictures on the first processor of another Vulkan driver: FILE
                  is its manifest, as /usr/share/vulkan/icd.d has them. Golden pictures are skipped there
   --release FILE with --all: palpate of the last release; this one may be slower beside its peers by 15 % at most
@@ -28,12 +30,13 @@ usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- 
 TEXT
 }
 
-flavours= all= driver= release=
+flavours= all= driver= release= resume=
 while [ $# -gt 0 ]; do
     case $1 in
     --asan) flavours="$flavours asan" ;;
     --tsan) flavours="$flavours tsan" ;;
     --all) all=1 ;;
+    --resume) resume=1 ;;
     --driver)
         [ $# -gt 1 ] || { say "--driver: expected the manifest of a Vulkan driver, a .json file"; exit 2; }
         driver=$2
@@ -52,6 +55,7 @@ while [ $# -gt 0 ]; do
     shift
 done
 
+[ -z "$resume" ] || [ -n "$all" ] || { say "--resume: expected with --all"; exit 2; }
 if [ -n "$driver" ]; then
     [ -r "$driver" ] || { say "--driver: $driver cannot be read; drivers have their manifests in /usr/share/vulkan/icd.d"; exit 2; }
     driver=$(cd "$(dirname "$driver")" && pwd)/$(basename "$driver") # as the loader wants it
@@ -100,7 +104,7 @@ build_flavour() {
     say "== $1: building in $2"
     # The demo's build has cached PALPATE_TESTS=OFF.
     # shellcheck disable=SC2086
-    prepare_build "$2" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers -DPALPATE_BENCHMARKS=$([ "$1" = plain ] && echo ON || echo OFF) $compiler
+    prepare_build "$2" -DPALPATE_TESTS=ON -DPALPATE_WERROR=ON -DPALPATE_SANITIZE=$sanitizers "-DPALPATE_SHADER_CACHE=$top/shader_cache" -DPALPATE_BENCHMARKS=$([ "$1" = plain ] && echo ON || echo OFF) $compiler
 }
 
 # test_flavour FOLDER CTEST-OPTIONS...
