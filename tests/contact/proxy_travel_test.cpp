@@ -8,6 +8,7 @@
 #include "engine/core/contract.h"
 #include "tests/contact/proxy_scenes.h"
 #include "tests/support/allocations.h"
+#include "tests/support/sanitized.h"
 
 namespace palp {
 namespace {
@@ -42,15 +43,17 @@ TEST(ProxyTravel, PressesFindTheNearSheet)
     EXPECT_EQ(missedPresses(0), 0);
 }
 
+constexpr int kWays = kSanitized ? 30 : 300; // the same code again
+
 struct Missed {
-    int fast = 0; ///< of 300 ways at 8 spacings per tick
-    int jump = 0; ///< of 300 ways in one tick, 60 spacings or more
+    int fast = 0; ///< of kWays at 8 spacings per tick
+    int jump = 0; ///< of kWays in one tick, 60 spacings or more
 };
 
 Missed missedWays(ProxyForm form)
 {
     Missed missed;
-    for (int run = 0; run < 300; ++run) {
+    for (int run = 0; run < kWays; ++run) {
         const double                     gaps[] = {0, 2, 3};
         std::mt19937_64                  random(7000 + std::uint64_t(run));
         std::uniform_real_distribution<> unit(0, 1);
@@ -77,12 +80,13 @@ Missed missedWays(ProxyForm form)
 TEST(ProxyTravel, NoWayIsTooFast)
 {
     const Missed missed = missedWays(ProxyForm::hybrid);
-    EXPECT_EQ(missed.fast, 0) << "of 300 at 8 spacings per tick";
-    EXPECT_EQ(missed.jump, 0) << "of 300 in one jump of 60 spacings or more";
+    EXPECT_EQ(missed.fast, 0) << "of " << kWays << " at 8 spacings per tick";
+    EXPECT_EQ(missed.jump, 0) << "of " << kWays << " in one jump of 60 spacings or more";
 }
 
 TEST(ProxyTravel, ThePapersFormAsPublishedMissesSurfacesOnItsWay)
 {
+    if (kSanitized) GTEST_SKIP() << "too few ways to count what is missed";
     const Missed missed = missedWays(ProxyForm::plainSphere);
     record("fast " + std::to_string(missed.fast) + ", jump " + std::to_string(missed.jump));
     EXPECT_GE(missed.fast, 8) << "of 300; recorded: 17. The regulated form misses none";

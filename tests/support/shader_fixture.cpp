@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "tests/support/sanitized.h"
+
 namespace palp {
 namespace {
 
@@ -188,6 +190,11 @@ compute::Context& ShaderTest::context()
 compute::Validation ShaderTest::validation()
 {
     return wantedValidation();
+}
+
+bool ShaderTest::watched()
+{
+    return validation() != compute::Validation::off || (kSanitized && !onHost());
 }
 
 std::vector<std::uint32_t> ShaderTest::sides()

@@ -85,6 +85,10 @@ protected:
     /// Returns the validation that PALPATE_VALIDATION names.
     static compute::Validation validation();
 
+    /// Whether validation layers or a sanitizer watch a driver's calls and memory, which take ten times as long then:
+    /// few plates stand for many, for what is watched is the same for each.
+    static bool watched();
+
     /// Returns sides of grids, none a multiple of a workgroup; only small ones where every access is checked.
     static std::vector<std::uint32_t> sides();
 

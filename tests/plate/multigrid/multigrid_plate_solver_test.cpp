@@ -120,11 +120,8 @@ protected:
         return context().processor().float64 ? inDoubles : MultigridPlateSolver::kLeastFloatTolerance;
     }
 
-    /// GPU-assisted validation is 20 times slower: small grids tell as much.
-    static std::vector<int> sizes()
-    {
-        return validation() == compute::Validation::off ? std::vector{32, 64, 128} : std::vector{20};
-    }
+    /// Where every access is checked small grids tell as much.
+    static std::vector<int> sizes() { return watched() ? std::vector{20} : std::vector{32, 64, 128}; }
 
 private:
     static inline std::optional<PlateKernels> kernels_;
@@ -311,7 +308,7 @@ double ulpsApart(const NodeField& a, const NodeField& b)
 TEST_F(MultigridPlate, AnotherDriverDiffersFromTheHostByNoMoreThanWhatFloatsRound)
 {
     if (onHost() || context().bitExact()) GTEST_SKIP() << "the host and lavapipe have the same bits";
-    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (watched()) GTEST_SKIP() << "time";
     using enum Edge;
     compute::Context   host({.processor = std::string(compute::kHostProcessor)});
     const PlateKernels here(context(), Schedule::passByPass, Precision::floats, Smoother::redBlack),
@@ -338,7 +335,7 @@ TEST_F(MultigridPlate, AnotherDriverDiffersFromTheHostByNoMoreThanWhatFloatsRoun
 TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
 {
     if (onHost()) GTEST_SKIP() << "it smooths in another way, and its dispatches cost nothing";
-    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (watched()) GTEST_SKIP() << "time";
     if (compilesSlowly(context())) GTEST_SKIP() << kCompilesSlowly;
     struct Row {
         int                                 cells;
@@ -447,7 +444,7 @@ TEST_F(MultigridPlate, ASmoothContrastOfAHundredThousandIsSolvedUnderEverySchedu
             for (const PlateEdges edges :
                  {PlateEdges{}, PlateEdges{clamped, free, free, free}, PlateEdges{supported, supported, free, clamped}})
                 for (const int cells : {64, 128}) {
-                    if (validation() != compute::Validation::off && cells > 64) continue; // time
+                    if (watched() && cells > 64) continue; // time
                     const Plate          plate = plateOf(cells, cells, edges, *which);
                     const NodeField      load  = footprintLoad(plate.grid, 1, 0.6, 0.4, 0.1);
                     MultigridPlateSolver solver(context(), kernels, plate, {.tolerance = 1e-4});
@@ -473,7 +470,7 @@ TEST_F(MultigridPlate, EveryEdgeOnEveryGroundAgreesWithTheReferenceUnderEverySch
     constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free, Edge::guided};
     for (const Schedule schedule : schedulesOf(context())) {
         const PlateKernels kernels(context(), schedule);
-        for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 3 : 61)
+        for (int code = 0; code < 256; code += watched() ? 61 : 3)
             for (const double foundation : {0.0, 1e-2, 1e6}) {
                 const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4],
                                        kEdges[code / 64]};
@@ -517,7 +514,7 @@ TEST_F(MultigridPlate, AFoundationThatVariesAgreesWithTheReferenceUnderEverySche
     constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free, Edge::guided};
     for (const Schedule schedule : schedulesOf(context())) {
         const PlateKernels kernels(context(), schedule);
-        for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 11 : 61)
+        for (int code = 0; code < 256; code += watched() ? 61 : 11)
             for (const double stiffness : {0.1, 10.0}) {
                 const PlateEdges    edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4],
                                        kEdges[code / 64]};
@@ -535,7 +532,7 @@ TEST_F(MultigridPlate, AFoundationThatVariesAgreesWithTheReferenceUnderEverySche
 
 TEST_F(MultigridPlate, AFoundationThatVariesTakesFewStepsWhateverTheSize)
 {
-    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (watched()) GTEST_SKIP() << "time";
     const int kMost = onHost() ? 12 : 8; // measured 3 to 10 and 3 to 7; where it does not vary, 3
     for (const int cells : {32, 64, 128, 256})
         for (const double stiffness : {0.1, 10.0, 1000.0}) {
@@ -566,7 +563,7 @@ TEST_F(MultigridPlate, AnotherFoundationIsAsIfTheSolverWereNew)
 TEST_F(MultigridPlate, EveryCombinationOfEdgesAgreesWithTheReferenceSolver)
 {
     constexpr Edge kEdges[] = {Edge::clamped, Edge::supported, Edge::free, Edge::guided};
-    for (int code = 0; code < 256; code += validation() == compute::Validation::off ? 3 : 61) {
+    for (int code = 0; code < 256; code += watched() ? 61 : 3) {
         const PlateEdges edges{kEdges[code % 4], kEdges[code / 4 % 4], kEdges[code / 16 % 4], kEdges[code / 64]};
         Plate            plate    = plateOf(26, 19, edges, kLaws[3]); // an odd number of cells, two levels
         plate.foundation          = 40;                               // so that a plate free on all sides has an answer
@@ -595,7 +592,7 @@ TEST_F(MultigridPlate, GridsOfAnyShapeAgreeWithTheReferenceSolver)
                                {64, 64, 2.5},
                                {48, 96, 0.5},
                                {31, 31, 4}}) {
-        if (validation() != compute::Validation::off && shape.x * shape.z > 400) continue;
+        if (watched() && shape.x * shape.z > 400) continue;
         Plate plate = plateOf(shape.x, shape.z, {Edge::clamped, Edge::free, Edge::supported, Edge::clamped}, kLaws[1]);
         plate.grid.spacingZ       = shape.uneven * plate.grid.spacingX;
         const NodeField     load  = loadOn(plate.grid);
@@ -700,7 +697,7 @@ TEST_F(MultigridPlate, ExactRimsTakeFewStepsWhateverTheContrast)
 /// not end within 200 steps on the host.
 TEST_F(MultigridPlate, ADiscOfAMillionConverges)
 {
-    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (watched()) GTEST_SKIP() << "time";
     if (!context().processor().float64) GTEST_SKIP() << "in floats such a plate is said not to be solved";
     const Law           million{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
     const Plate         plate = plateOf(64, 64, {}, million);
@@ -797,7 +794,7 @@ double energyOf(const Plate& plate, const NodeField& w)
 /// The solves of which the estimate used to be too small by up to 5.5: discs, two loads, on the host with both smoothers.
 TEST_F(MultigridPlate, TheErrorsEnergyIsAtMostTwoAndAHalfTimesTheEstimateWhateverTheDisc)
 {
-    if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
+    if (watched()) GTEST_SKIP() << "time";
     const bool double64 = context().processor().float64;
     for (const Smoother smoother : {Smoother::chebyshev, Smoother::redBlack}) {
         if (!onHost() && smoother == Smoother::chebyshev) continue; // the same bits as on the host
@@ -889,7 +886,7 @@ TEST_F(MultigridPlate, AnotherRigidityIsAsIfTheSolverWereNew)
 /// leaves the plate's corners soft.
 TEST_F(MultigridPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther)
 {
-    const int            count  = validation() == compute::Validation::off ? 30 : 5;
+    const int            count  = watched() ? 5 : 30;
     Plate                plate  = plateOf(40, 40, {}, kLaws[6]);
     const NodeField      load   = loadOn(plate.grid);
     MultigridPlateSolver solver = solverFor(plate, {.tolerance = allowed(1e-6)});
@@ -910,9 +907,9 @@ TEST_F(MultigridPlate, ManyRigiditiesWithJumpsElsewhereAreSolvedOneAfterTheOther
 /// Contrast beyond what the cycle is good at: slow, but never dishonest.
 TEST_F(MultigridPlate, AnExtremeContrastConvergesOrSaysThatItDidNot)
 {
-    const Law   extreme{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
-    const Plate plate = plateOf(validation() == compute::Validation::off ? 64 : 20,
-                                validation() == compute::Validation::off ? 64 : 20, {}, extreme);
+    const int           cells = watched() ? 20 : 64;
+    const Law           extreme{"disc 1e6", [](double x, double z) { return disc(x, z, 1e6); }, false};
+    const Plate         plate = plateOf(cells, cells, {}, extreme);
     const NodeField     load  = loadOn(plate.grid);
     const PlateSolution truth = ReferencePlateSolver(plate).solve(load);
     const PlateSolution found = solverFor(plate).solve(load);

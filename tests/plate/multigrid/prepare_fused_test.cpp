@@ -28,14 +28,13 @@ protected:
         bool                                    jumps = false, tooSoft = false;
     };
 
-    static Prepared prepareBy(Schedule schedule, const Plate& plate, int coarsest)
+    static Prepared prepareBy(const PlateKernels& kernels, const Plate& plate, int coarsest)
     {
-        const PlateKernels kernels(context(), schedule);
-        PlatePasses        passes(context(), kernels.all(), gridHierarchy(plate, 1, coarsest), 1);
-        const Binding&     finest = passes.levels[0].rigidity;
-        Buffer             given(context(), "given", finest.bytes, Intent::upload);
-        const auto&        D = plate.rigidity.values();
-        const auto&        s = plate.foundationShape.values();
+        PlatePasses    passes(context(), kernels.all(), gridHierarchy(plate, 1, coarsest), 1);
+        const Binding& finest = passes.levels[0].rigidity;
+        Buffer         given(context(), "given", finest.bytes, Intent::upload);
+        const auto&    D = plate.rigidity.values();
+        const auto&    s = plate.foundationShape.values();
         std::transform(D.begin(), D.end(), given.as<float>().begin(), [](double value) { return float(value); });
         std::transform(s.begin(), s.end(), given.as<float>().begin() + std::ptrdiff_t(D.size()),
                        [](double value) { return float(value); });
@@ -92,11 +91,11 @@ TEST_F(PrepareFused, FourDispatchesPrepareTheSameBits)
     if (onHost()) GTEST_SKIP() << "the host has no such kernels";
     if (validation() != compute::Validation::off) GTEST_SKIP() << "time";
     if (!context().bitExact()) GTEST_SKIP() << "a driver may fuse the sums of each kernel as it likes";
+    const PlateKernels fused(context(), Schedule::fused), onePassEach(context(), Schedule::passByPass);
     for (const Plate& plate : plates())
         for (const int coarsest : {shared::kTailCoarseCells, shared::kMostCoarseCells}) {
             SCOPED_TRACE(describe(plate) + ", at most " + std::to_string(coarsest) + " on the coarsest level");
-            const Prepared one  = prepareBy(Schedule::fused, plate, coarsest),
-                           each = prepareBy(Schedule::passByPass, plate, coarsest);
+            const Prepared one = prepareBy(fused, plate, coarsest), each = prepareBy(onePassEach, plate, coarsest);
             EXPECT_TRUE(one.rigidity == each.rigidity);
             EXPECT_TRUE(one.divisor == each.divisor);
             EXPECT_TRUE(one.tiles == each.tiles);
