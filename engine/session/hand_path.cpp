@@ -24,6 +24,7 @@ namespace {
 
 constexpr double      kTick          = 1e-3;       // [s] of generated hands: the servo's period
 constexpr std::size_t kMostWaypoints = 10'000'000; // 2.8 hours at 1 kHz; a larger file is no hand
+constexpr double      kLongest       = 3600;       // [s] of generated hands that are stored whole, 260 MB of waypoints
 
 std::string text(double value)
 {
@@ -231,8 +232,7 @@ public:
         case HandMotion::press:
             return {0, 0, up(t)};
         case HandMotion::circle: {
-            constexpr double kRamp = 0.2; // [s] from rest to full speed: a person takes about as long
-            const double     angle = kRamp * rampedTime((t - descent_) / kRamp) * s_.speed / s_.radius;
+            const double angle = kRamp * rampedTime((t - descent_) / kRamp) * s_.speed / s_.radius;
             return {s_.radius * std::cos(angle), s_.radius * std::sin(angle), up(std::min(t, descent_))};
         }
         case HandMotion::scan:
@@ -242,7 +242,18 @@ public:
         return {-s_.radius * std::cos(phase), 0, up(std::min(t, descent_))};
     }
 
+    /// Returns when all is repetition [s].
+    [[nodiscard]] double settled() const { return s_.motion == HandMotion::press ? 0 : descent_ + kRamp; }
+
+    /// Returns how long a repetition takes [s].
+    [[nodiscard]] double period() const
+    {
+        return s_.motion == HandMotion::press ? 2 * descent_ : 2 * std::numbers::pi * s_.radius / s_.speed;
+    }
+
 private:
+    static constexpr double kRamp = 0.2; // [s] from rest to full speed: a person takes about as long
+
     [[nodiscard]] double up(double t) const
     {
         return s_.height - fall_ * (1 - std::cos(std::numbers::pi * t / descent_)) / 2;
@@ -255,7 +266,8 @@ private:
 
 } // namespace
 
-HandPath::HandPath(std::vector<HandPose> waypoints, const std::string& name)
+HandPath::HandPath(std::vector<HandPose> waypoints, const std::string& name, std::optional<double> repeatsFrom)
+    : repeatsFrom_(repeatsFrom)
 {
     Checked checked;
     checked.waypoints.reserve(waypoints.size());
@@ -268,8 +280,16 @@ HandPath::HandPath(std::vector<HandPose> waypoints, const std::string& name)
             waypoints_, [](const HandPose& waypoint) { return waypoint.orientation != glm::dquat(1, 0, 0, 0); });
 }
 
+double HandPath::inPath(double time) const noexcept
+{
+    const double end = waypoints_.back().time;
+    if (!repeatsFrom_ || !(time > end)) return time;
+    return *repeatsFrom_ + std::fmod(time - *repeatsFrom_, end - *repeatsFrom_);
+}
+
 glm::dvec3 HandPath::position(double time) const noexcept
 {
+    time = inPath(time);
     if (!(time > waypoints_.front().time)) return waypoints_.front().position; // NaN too
     if (time >= waypoints_.back().time) return waypoints_.back().position;
     const auto      next = std::ranges::upper_bound(waypoints_, time, {}, &HandPose::time);
@@ -280,6 +300,7 @@ glm::dvec3 HandPath::position(double time) const noexcept
 
 std::uint32_t HandPath::buttons(double time) const noexcept
 {
+    time = inPath(time);
     if (!(time >= waypoints_.front().time)) return 0; // NaN too
     return (std::ranges::upper_bound(waypoints_, time, {}, &HandPose::time) - 1)->buttons;
 }
@@ -287,6 +308,7 @@ std::uint32_t HandPath::buttons(double time) const noexcept
 glm::dquat HandPath::orientation(double time) const noexcept
 {
     if (!turns_) return {1, 0, 0, 0};
+    time = inPath(time);
     if (!(time > waypoints_.front().time)) return waypoints_.front().orientation; // NaN too
     if (time >= waypoints_.back().time) return waypoints_.back().orientation;
     const auto      next = std::ranges::upper_bound(waypoints_, time, {}, &HandPose::time);
@@ -359,20 +381,23 @@ HandPath makeHand(const HandScript& script, const HandPlace& place)
                     {"radius", script.radius},
                     {"height + depth", script.height + script.depth},
                     {"duration", script.duration}});
-    const Frame           frame = Frame::about(place.outward);
-    const Script          motion(script);
-    const double          ticks = std::ceil(script.duration / kTick);
+    const Frame  frame = Frame::about(place.outward);
+    const Script motion(script);
+    const bool   repeats = script.duration > kLongest;
+    const double end = repeats ? motion.settled() + motion.period() : kTick * std::ceil(script.duration / kTick); // [s]
+    if (!(end < kTick * double(kMostWaypoints)))
+        throw Error("hand: expected a motion of less than " + text(kTick * double(kMostWaypoints)) + " s, found " +
+                    text(end) + " s; take a greater speed");
     std::vector<HandPose> waypoints;
-    if (!(ticks < double(kMostWaypoints)))
-        throw Error("hand: duration: expected at most " + text(double(kMostWaypoints) * kTick) + " s, found " +
-                    text(script.duration) + " s");
-    waypoints.reserve(std::size_t(ticks) + 1);
-    for (std::size_t i = 0; i <= std::size_t(ticks); ++i) {
-        const double     t = double(i) * kTick;
+    waypoints.reserve(std::size_t(end / kTick) + 2);
+    const auto add = [&](double t) {
         const glm::dvec3 p = motion.at(t);
         waypoints.push_back({t, place.point + p.x * frame.east + p.y * frame.north + p.z * frame.normal});
-    }
-    return HandPath(std::move(waypoints), std::string("hand ") + name(script.motion));
+    };
+    for (std::size_t i = 0; double(i) * kTick < end - kTick / 2; ++i) add(double(i) * kTick);
+    add(end);
+    return HandPath(std::move(waypoints), std::string("hand ") + name(script.motion),
+                    repeats ? std::optional(motion.settled()) : std::nullopt);
 }
 
 HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& object)
@@ -423,7 +448,7 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& 
         if (radius > 0) follow(inPlaneOf(waypoint.position));
         waypoint.position += height * place.outward;
     }
-    return HandPath(std::move(waypoints), "hand");
+    return HandPath(std::move(waypoints), "hand", hand.repeatsFrom());
 }
 
 } // namespace palp

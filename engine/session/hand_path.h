@@ -37,11 +37,15 @@ public:
     /// Largest speed of a hand [m/s]: a higher one is a wrong unit; a thrown ball has 40.
     static constexpr double kFastest = 100;
 
-    /// \param name  opens complaints
+    /// \param name         opens complaints
+    /// \param repeatsFrom  [s] within the path: where it goes on after its end, again and again; without it the hand
+    ///                     rests there
     /// \throws Error naming the first waypoint that is wrong (counted from 0)
-    explicit HandPath(std::vector<HandPose> waypoints, const std::string& name = "hand");
+    explicit HandPath(std::vector<HandPose> waypoints, const std::string& name = "hand",
+                      std::optional<double> repeatsFrom = {});
 
-    /// Returns the hand at a time [s]: at rest at the first waypoint before it begins, at the last after it has ended.
+    /// Returns the hand at a time [s]: at rest at the first waypoint before it begins, at the last after it has ended,
+    /// or in its repetition.
     [[nodiscard]] glm::dvec3 position(double time) const noexcept;
 
     /// Returns the buttons that are down at a time [s]: those of the last waypoint up to then.
@@ -54,12 +58,16 @@ public:
     [[nodiscard]] bool turns() const noexcept { return turns_; }
 
     [[nodiscard]] double begin() const noexcept { return waypoints_.front().time; }             ///< [s]
-    [[nodiscard]] double duration() const noexcept { return waypoints_.back().time - begin(); } ///< [s]
-    [[nodiscard]] double fastest() const noexcept { return fastest_; }                          ///< [m/s]
+    [[nodiscard]] double duration() const noexcept { return waypoints_.back().time - begin(); } ///< [s] of one pass
+    [[nodiscard]] std::optional<double>        repeatsFrom() const noexcept { return repeatsFrom_; } ///< [s]
+    [[nodiscard]] double                       fastest() const noexcept { return fastest_; }         ///< [m/s]
     [[nodiscard]] const std::vector<HandPose>& waypoints() const noexcept { return waypoints_; }
 
 private:
+    [[nodiscard]] double inPath(double time) const noexcept; ///< [s]
+
     std::vector<HandPose> waypoints_;
+    std::optional<double> repeatsFrom_; ///< [s]
     double                fastest_ = 0; ///< [m/s]
     bool                  turns_   = false;
 };
@@ -119,13 +127,13 @@ struct HandScript {
 
 /// Makes a hand in the plane through the place, perpendicular to its outward direction: a waypoint every millisecond
 /// from time 0 on, without a jump in velocity, never faster than the script's speed. The same script gives the
-/// same bits.
+/// same bits. Of more than an hour one pass is made, and repeated.
 ///
 ///     press   outward height  h - (h + d)(1 - cos(pi t / T))/2,  T = pi (h + d) / (2 speed), again and again
 ///     circle  press's first half beside the place, then round it, the speed rising smoothly within a fifth of a second
 ///     scan    press's first half, then along the line as -r cos(speed t / r)
 ///
-/// \throws Error naming what is not positive
+/// \throws Error naming what is not positive, or that one pass takes more than 10000 s
 [[nodiscard]] HandPath makeHand(const HandScript& script, const HandPlace& place);
 
 /// Makes a hand that keeps its depth over a curved object: each waypoint moves along `outward` by the height of the

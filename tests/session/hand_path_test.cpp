@@ -205,6 +205,26 @@ TEST(GeneratedHand, StartsAboveThePlaceGoesToItsDepthAndDoesWhatItIsCalled)
     EXPECT_NEAR(most, 8e-3, 1e-6);
 }
 
+TEST(GeneratedHand, GoesOnForDaysInTheMemoryOfOnePass)
+{
+    constexpr double kDescent = std::numbers::pi * 7e-3 / (2 * 0.05); // [s]
+    for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan}) {
+        HandScript days     = script(motion);
+        days.duration       = 3 * 86400;
+        const HandPath hand = makeHand(days, kPlace);
+        const HandPath pass = makeHand(script(motion), kPlace);
+        EXPECT_LT(hand.waypoints().size(), 3000u);
+        EXPECT_LE(hand.fastest(), 0.05 * (1 + 1e-9));
+
+        const double cycle = motion == HandMotion::press ? 2 * kDescent : 2 * std::numbers::pi * 8e-3 / 0.05; // [s]
+        for (const double t : {0.1, 1.7, 4000.3, 86399.999, 259199.5}) {
+            const double within = t < 2 ? t : 1 + std::fmod(t - 1, cycle); // `pass` rests after three seconds
+            EXPECT_LT(glm::distance(hand.position(t), pass.position(within)), 2e-7)
+                << "a chord: 0.9 m/s2 (1 ms)^2 / 8, " << name(motion) << " at " << t;
+        }
+    }
+}
+
 TEST(GeneratedHand, TheSameScriptGivesTheSameBits)
 {
     const HandPath one = makeHand(script(HandMotion::circle), kPlace),
@@ -222,7 +242,7 @@ TEST(GeneratedHand, SenselessScriptsAreRefused)
     EXPECT_TRUE(holds(refused({.speed = std::nan("")}), {"speed"}));
     EXPECT_TRUE(holds(refused({.motion = HandMotion::circle, .radius = -1}), {"radius", "-1"}));
     EXPECT_TRUE(holds(refused({.depth = -1, .height = 0.5}), {"height + depth"}));
-    EXPECT_TRUE(holds(refused({.duration = 1e9}), {"duration"}));
+    EXPECT_TRUE(holds(refused({.speed = 1e-9, .duration = 1e9}), {"10000 s", "greater speed"}));
     EXPECT_EQ(valueNamed<HandMotion>("scan"), HandMotion::scan);
     EXPECT_EQ(valueNamed<HandMotion>("wave"), std::nullopt);
 }

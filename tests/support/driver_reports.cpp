@@ -37,6 +37,13 @@ extern "C" const char* __lsan_default_suppressions()
 
 #else
 
+// The runtime sleeps for a second at the end of each process that still has threads, in case one of them races with the exit:
+// a quarter of an hour over all tests, which sanitizers seldom have. Workers that were set free have woken up in this time.
+extern "C" const char* __tsan_default_options()
+{
+    return "atexit_sleep_ms=20";
+}
+
 // Neither drivers nor the threads of CHOLMOD are instrumented, so ThreadSanitizer does not see what they wait for. X's
 // library gives back a mutex that it does not hold when its display has gone.
 extern "C" const char* __tsan_default_suppressions()
