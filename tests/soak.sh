@@ -6,7 +6,8 @@ usage() {
     cat <<'TEXT'
 usage: sh tests/soak.sh [--hours N | --minutes N] [--seed N] [--jobs N]
 
-  --hours N, --minutes N  how long (10 minutes); what was run is kept, so that the next run goes on where this one ended
+  --hours N, --minutes N  how long (10 minutes); what was run is kept, so that the next run goes on where this one ended,
+                          or with the batch that found something
   --seed N                of everything that is random (1)
   --jobs N                processes side by side (2), each with batches of its own
 
@@ -41,6 +42,8 @@ while [ $part -lt "$jobs" ]; do
     pids="$pids $!"
     part=$((part + 1))
 done
+# shellcheck disable=SC2086
+trap 'kill $pids 2>/dev/null; exit 130' INT TERM
 failed=0
 for pid in $pids; do wait "$pid" || failed=1; done
 exit $failed

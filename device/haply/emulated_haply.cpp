@@ -6,6 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/json_depth.h"
+
 namespace palp {
 namespace {
 
@@ -188,7 +190,12 @@ void EmulatedHaply::Peer::receive(std::span<const std::uint8_t> bytes)
     }
     while (const std::optional<WebSocketMessage> message = reader_.next()) {
         if (message->kind == WebSocketKind::close) isClosed = true;
-        if (message->kind == WebSocketKind::text && port_ == HaplyPort::service) obey(message->payload);
+        if (message->kind != WebSocketKind::text || port_ != HaplyPort::service) continue;
+        try {
+            obey(message->payload);
+        } catch (const Json::exception&) { // no request of a client
+            isClosed = true;
+        }
     }
 }
 
@@ -215,7 +222,7 @@ void EmulatedHaply::Peer::answerHttp(const HttpHead& head)
 void EmulatedHaply::Peer::obey(const std::string& message)
 {
     ++service_.requests_;
-    const Json request   = Json::parse(message, nullptr, false);
+    const Json request   = tooDeepAt(message) ? Json() : Json::parse(message, nullptr, false);
     const bool wantsFull = request.contains("/session/force_render_full_state"_json_pointer);
     const auto profile   = "/session/configure/profile/name"_json_pointer;
     if (request.contains(profile)) service_.profile_ = request[profile].get<std::string>();

@@ -3,12 +3,14 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <optional>
 #include <ostream>
 #include <streambuf>
 #include <system_error>
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -64,6 +66,8 @@ public:
     OpenFile(const OpenFile&)            = delete;
     OpenFile& operator=(const OpenFile&) = delete;
 
+    [[nodiscard]] bool isOpen() const noexcept { return handle_ >= 0; }
+
     /// \return false with errno if the system could not keep the bytes
     bool close() { return handle_ < 0 || ::close(std::exchange(handle_, -1)) == 0; }
 
@@ -91,20 +95,75 @@ private:
     std::array<char, 65536> bytes_;
 };
 
-/// Makes a new file beside `path` under a name that nothing has: two writers get two drafts, and a link that waits there
-/// is not followed.
-/// \return its handle, or -1 with errno
-int makeDraft(const std::filesystem::path& path, std::filesystem::path& draft)
-{
-    constexpr int     kMostNames = 1000;
-    const std::string stem       = path.string() + "." + std::to_string(::getpid());
-    for (int name = 0; name < kMostNames; ++name) {
-        draft            = name == 0 ? stem + ".part" : stem + '.' + std::to_string(name) + ".part";
-        const int handle = ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (handle >= 0 || errno != EEXIST) return handle;
+/// What is written beside a path before it replaces the file there. Where the system can, it has no name until it is
+/// whole, so that nothing is left of it when the program is killed.
+class Draft {
+public:
+    explicit Draft(std::filesystem::path path) : path_(std::move(path))
+    {
+        const std::string folder = path_.has_parent_path() ? path_.parent_path().string() : ".";
+#ifdef O_TMPFILE
+        if (::access("/proc/self/fd", X_OK) == 0)
+            handle_ = ::open(folder.c_str(), O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+#endif
+        if (handle_ < 0)
+            give([&](const char* name) {
+                handle_ = ::open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+                return handle_ >= 0;
+            });
     }
-    return -1;
-}
+    ~Draft()
+    {
+        if (!name_.empty()) ::unlink(name_.c_str());
+    }
+    Draft(const Draft&)            = delete;
+    Draft& operator=(const Draft&) = delete;
+
+    /// Returns the draft's handle, which whoever writes closes; -1, with errno, if there is none.
+    [[nodiscard]] int handle() const noexcept
+    {
+        return handle_;
+    }
+
+    /// Gives the draft a name, while its handle is open.
+    /// \return false with errno if the system refuses
+    bool name()
+    {
+        const std::string own = "/proc/self/fd/" + std::to_string(handle_);
+        return !name_.empty() || give([&](const char* name) {
+            return ::linkat(AT_FDCWD, own.c_str(), AT_FDCWD, name, AT_SYMLINK_FOLLOW) == 0;
+        });
+    }
+
+    /// Puts the draft at its path.
+    /// \return false with errno if the system refuses
+    bool replace()
+    {
+        if (::rename(name_.c_str(), path_.c_str()) != 0) return false;
+        name_.clear();
+        return true;
+    }
+
+private:
+    /// Tries names that nothing may have: two writers get two drafts, and a link that waits there is not followed.
+    template <class Make>
+    bool give(Make make)
+    {
+        constexpr int     kMostNames = 1000;
+        const std::string stem       = path_.string() + "." + std::to_string(::getpid());
+        for (int n = 0; n < kMostNames; ++n) {
+            name_ = n == 0 ? stem + ".part" : stem + '.' + std::to_string(n) + ".part";
+            if (make(name_.c_str())) return true;
+            if (errno != EEXIST) break;
+        }
+        name_.clear();
+        return false;
+    }
+
+    std::filesystem::path path_;
+    std::string           name_; ///< empty: it has none
+    int                   handle_ = -1;
+};
 
 /// Gives a draft the permissions of the file that it replaces: what was for one user's eyes stays so.
 void keepMode(int handle, const std::filesystem::path& older)
@@ -164,24 +223,30 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     const std::filesystem::path place = behindLinks(path);
 
     errno = 0;
-    std::filesystem::path draft;
-    const int             handle = replaceable ? makeDraft(place, draft) : ::open(place.c_str(), O_WRONLY | O_CLOEXEC);
-    if (handle < 0) refuseToWrite(path, reasonOfErrno());
-    try {
-        if (replaceable) keepMode(handle, place);
-        OpenFile     file(handle);
-        std::ostream stream(&file);
-        errno = 0; // a failure below, in `write` or in the last flush, sets it
-        write(stream);
-        if (!stream.flush() || !file.close()) refuseToWrite(path, reasonOfErrno());
-        if (replaceable) std::filesystem::rename(draft, place);
-    } catch (const std::filesystem::filesystem_error& failure) {
-        if (replaceable) std::filesystem::remove(draft, status);
-        refuseToWrite(path, failure.code().message());
-    } catch (...) {
-        if (replaceable) std::filesystem::remove(draft, status);
-        throw;
-    }
+    std::optional<Draft> draft;
+    if (replaceable) draft.emplace(place);
+    OpenFile file(draft ? draft->handle() : ::open(place.c_str(), O_WRONLY | O_CLOEXEC));
+    if (!file.isOpen()) refuseToWrite(path, reasonOfErrno());
+    if (draft) keepMode(draft->handle(), place);
+    std::ostream stream(&file);
+    errno = 0; // a failure below, in `write` or in the last flush, sets it
+    write(stream);
+    if (!stream.flush() || (draft && !draft->name()) || !file.close() || (draft && !draft->replace()))
+        refuseToWrite(path, reasonOfErrno());
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& taken)
+    : handle_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC))
+{
+    if (handle_ < 0) throw Error(folder.string() + ": cannot be read: " + reasonOfErrno());
+    if (::flock(handle_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return;
+    ::close(handle_);
+    throw Error(folder.string() + ": " + taken);
+}
+
+FolderLock::~FolderLock()
+{
+    ::close(handle_);
 }
 
 void makeFolder(const std::filesystem::path& path)

@@ -34,6 +34,20 @@ namespace palp {
 /// \throws Error naming the path and the reason
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
+/// The right to write into a folder, for one process at a time. The system ends it with the process, however that ends.
+class FolderLock {
+public:
+    /// \param taken  what to say where another process has it, "FOLDER: " stands before it
+    /// \throws Error if another process has it, or there is no such folder; where the file system knows no locks it is given
+    FolderLock(const std::filesystem::path& folder, const std::string& taken);
+    ~FolderLock();
+    FolderLock(const FolderLock&)            = delete;
+    FolderLock& operator=(const FolderLock&) = delete;
+
+private:
+    int handle_;
+};
+
 /// Creates a folder and its parents.
 /// \throws Error naming the path and the reason
 void makeFolder(const std::filesystem::path& path);

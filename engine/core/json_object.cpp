@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/json_depth.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/shown_text.h"
 
@@ -90,6 +91,10 @@ struct JsonObject::Node {
 
 JsonObject JsonObject::parse(std::string_view text, std::string where)
 {
+    if (const auto deep = tooDeepAt(text))
+        throw Error(where + ": line " + std::to_string(1 + std::ranges::count(text.substr(0, *deep), '\n')) +
+                    ": expected lists and objects in at most " + std::to_string(kDeepestJson) +
+                    " levels, found more; is a bracket missing?");
     auto node = std::make_shared<Node>();
     try {
         constexpr bool kThrow = true, kIgnoreComments = true;

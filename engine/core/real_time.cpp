@@ -58,6 +58,17 @@ std::string askForRealTime()
 #endif
 }
 
+double timeAsleep() noexcept
+{
+#ifdef __linux__
+    timespec counted{}, all{};
+    if (clock_gettime(CLOCK_MONOTONIC, &counted) != 0 || clock_gettime(CLOCK_BOOTTIME, &all) != 0) return 0;
+    return double(all.tv_sec - counted.tv_sec) + 1e-9 * double(all.tv_nsec - counted.tv_nsec);
+#else
+    return 0;
+#endif
+}
+
 Metronome::Clock::time_point Metronome::wait() noexcept
 {
     next_ += period_;

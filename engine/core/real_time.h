@@ -9,6 +9,10 @@ namespace palp {
 /// \return empty, or one sentence that says what was refused and how to allow it
 [[nodiscard]] std::string askForRealTime();
 
+/// Returns for how long the machine has been suspended since it was started [s], to some microseconds: the time that
+/// std::chrono::steady_clock does not count. 0 where the system does not say.
+[[nodiscard]] double timeAsleep() noexcept;
+
 /// A clock of instants at a fixed distance, for which a thread waits one after the other.
 ///
 /// A late thread does not catch up: instants that have passed by more than a period are omitted and counted.

@@ -24,7 +24,8 @@ namespace {
 
 constexpr double      kTick          = 1e-3;       // [s] of generated hands: the servo's period
 constexpr std::size_t kMostWaypoints = 10'000'000; // 2.8 hours at 1 kHz; a larger file is no hand
-constexpr double      kLongest       = 3600;       // [s] of generated hands that are stored whole, 260 MB of waypoints
+constexpr double      kWhole         = 60;         // [s] of generated hands that are stored whole
+constexpr double      kLongest       = 86400;      // [s] of a hand: what is longer is no hand, or in another unit
 
 std::string text(double value)
 {
@@ -55,6 +56,9 @@ public:
         if (waypoints.size() < 2)
             throw Error(name + ": expected at least two waypoints time, x, y, z, found " +
                         std::to_string(waypoints.size()));
+        if (const double lasts = waypoints.back().time - waypoints.front().time; !(lasts <= kLongest))
+            throw Error(name + ": expected a hand of at most " + text(kLongest) + " s, found one of " + text(lasts) +
+                        " s; are the times seconds?");
     }
 
     std::vector<HandPose> waypoints;
@@ -245,10 +249,11 @@ public:
     /// Returns when all is repetition [s].
     [[nodiscard]] double settled() const { return s_.motion == HandMotion::press ? 0 : descent_ + kRamp; }
 
-    /// Returns how long a repetition takes [s].
-    [[nodiscard]] double period() const
+    /// Returns how long whole repetitions take, a second and more [s].
+    [[nodiscard]] double repetition() const
     {
-        return s_.motion == HandMotion::press ? 2 * descent_ : 2 * std::numbers::pi * s_.radius / s_.speed;
+        const double one = s_.motion == HandMotion::press ? 2 * descent_ : 2 * std::numbers::pi * s_.radius / s_.speed;
+        return one > kTick ? one * std::ceil(1 / one) : 1; // faster than a tick it is nothing that a servo can follow
     }
 
 private:
@@ -383,8 +388,9 @@ HandPath makeHand(const HandScript& script, const HandPlace& place)
                     {"duration", script.duration}});
     const Frame  frame = Frame::about(place.outward);
     const Script motion(script);
-    const bool   repeats = script.duration > kLongest;
-    const double end = repeats ? motion.settled() + motion.period() : kTick * std::ceil(script.duration / kTick); // [s]
+    const double once    = motion.settled() + motion.repetition(); // [s]
+    const bool   repeats = script.duration > std::max(kWhole, once);
+    const double end     = repeats ? once : kTick * std::ceil(script.duration / kTick); // [s]
     if (!(end < kTick * double(kMostWaypoints)))
         throw Error("hand: expected a motion of less than " + text(kTick * double(kMostWaypoints)) + " s, found " +
                     text(end) + " s; take a greater speed");

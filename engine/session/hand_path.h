@@ -127,13 +127,14 @@ struct HandScript {
 
 /// Makes a hand in the plane through the place, perpendicular to its outward direction: a waypoint every millisecond
 /// from time 0 on, without a jump in velocity, never faster than the script's speed. The same script gives the
-/// same bits. Of more than an hour one pass is made, and repeated.
+/// same bits. Of more than a minute one pass is made, and
+/// repeated.
 ///
 ///     press   outward height  h - (h + d)(1 - cos(pi t / T))/2,  T = pi (h + d) / (2 speed), again and again
 ///     circle  press's first half beside the place, then round it, the speed rising smoothly within a fifth of a second
 ///     scan    press's first half, then along the line as -r cos(speed t / r)
 ///
-/// \throws Error naming what is not positive, or that one pass takes more than 10000 s
+/// \throws Error naming what is not positive, or that the motion takes more than 10000 s
 [[nodiscard]] HandPath makeHand(const HandScript& script, const HandPlace& place);
 
 /// Makes a hand that keeps its depth over a curved object: each waypoint moves along `outward` by the height of the

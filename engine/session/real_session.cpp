@@ -124,19 +124,23 @@ void RealSession::servoThread()
     warning_                = askForRealTime();
     Metronome metronome{std::chrono::microseconds(1000)};
     auto      start = metronome.wait(); // asking may take a quarter of a second
-    double    last = 0, period = kTick;
+    double    last = 0, period = kTick, asleep = timeAsleep();
     Stopping  stopping;
     if (settings_.onStart) settings_.onStart(start);
     for (;;) {
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;
+        const double slept =
+            timeAsleep() - asleep; // a suspended machine: the hand is elsewhere, the clock has stood still
+        const double pause = slept > kTick ? slept : 0;
+        asleep += pause;
         if (time >= settings_.seconds || shared_.over || (settings_.stop && *settings_.stop)) break;
         last = lastTick_ = time;
         period += (dt - period) * kShare;
         summary_.period.add(dt);
         const double      began  = threadSeconds();
         const HapticState state  = parts_.device.read(time);
-        TickRecord        record = tick({time, dt}, state, stopping.isAsked());
+        TickRecord        record = tick({time, dt + pause}, state, stopping.isAsked());
         parts_.device.light(std::uint8_t(lightOf(forceState(record))));
         parts_.device.render(parts_.frame.toDevice(force_.governor().force())); // leaves in this tick
         record.tickTime       = threadSeconds() - began;

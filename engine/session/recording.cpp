@@ -116,6 +116,7 @@ public:
         marked_ += markers.size();
     }
 
+    [[nodiscard]] bool          areThere() const noexcept { return ticks_.isThere() && markers_.isThere(); }
     [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
     [[nodiscard]] std::uint64_t marked() const noexcept { return marked_; }
 
@@ -261,13 +262,18 @@ struct Recording::Impl {
         try {
             files.append(batch);
         } catch (const std::exception& error) {
-            why = "recording stopped after " + std::to_string(files.rows()) + " ticks: " + error.what();
-            stopped.store(true, std::memory_order_release);
-            if (complain)
-                complain(*why);
-            else
-                std::cerr << "palpate: " << *why << "\n";
+            stop("recording stopped after " + std::to_string(files.rows()) + " ticks: " + error.what());
         }
+    }
+
+    void stop(const std::string& sentence)
+    {
+        why = sentence;
+        stopped.store(true, std::memory_order_release);
+        if (complain)
+            complain(*why);
+        else
+            std::cerr << "palpate: " << *why << "\n";
     }
 
     RecordingReport finish()
@@ -275,8 +281,11 @@ struct Recording::Impl {
         if (writer.joinable()) {
             finishing.store(true, std::memory_order_release);
             writer.join();
-            report = {files.rows(), pushed - files.rows(), longestGap,
-                      why,          files.marked(),        marksHeard - files.marked()};
+            const bool there = files.areThere();
+            if (!there && !why)
+                stop(folder.string() + ": another program has removed, moved or cut the files of the recording");
+            const std::uint64_t rows = there ? files.rows() : 0, marked = there ? files.marked() : 0;
+            report = {rows, pushed - rows, longestGap, why, marked, marksHeard - marked};
             describeEnd();
         }
         return report;

@@ -1,13 +1,16 @@
 #include "engine/core/file.h"
 
+#include <csignal>
 #include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "engine/core/contract.h"
@@ -161,6 +164,36 @@ TEST_F(Files, ALinkThatLeadsNowhereYetGetsItsFile)
     std::filesystem::create_symlink("circle", folder_ / "circle");
     const std::string refusal = refusalOf([&] { writeFileWhole(folder_ / "circle", writeNew); });
     EXPECT_NE(refusal.find("too many links"), std::string::npos) << refusal;
+}
+
+TEST_F(Files, AKilledWriterLeavesNothingBesideTheOlderFile)
+{
+    const int probe = ::open(folder_.path().c_str(), O_WRONLY | O_TMPFILE, 0600);
+    if (probe < 0) GTEST_SKIP() << "this file system makes no file without a name";
+    ::close(probe);
+    std::ofstream(folder_ / "a") << "old";
+    const pid_t child = ::fork();
+    if (child == 0)
+        writeFileWhole(folder_ / "a", [](std::ostream& stream) {
+            stream << std::string(100'000, 'x') << std::flush;
+            ::raise(SIGKILL);
+        });
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFSIGNALED(status));
+    EXPECT_EQ(namesInFolder(), std::vector<std::string>{"a"});
+    EXPECT_EQ(contentsOf(folder_ / "a"), "old");
+}
+
+TEST_F(Files, AFolderIsLockedForOneAtATime)
+{
+    {
+        const FolderLock first(folder_.path(), "taken");
+        EXPECT_TRUE(holds(refusalOf([&] { const FolderLock second(folder_.path(), "taken"); }),
+                          {folder_.path().c_str(), "taken"}));
+    }
+    EXPECT_EQ(refusalOf([&] { const FolderLock again(folder_.path(), "taken"); }), "");
+    EXPECT_TRUE(holds(refusalOf([&] { const FolderLock none(folder_ / "none", "taken"); }), {"none", "No such file"}));
 }
 
 /// Whoever can write into the folder could have foreseen the draft's name.

@@ -1,7 +1,7 @@
 // Clocks that jump, for whole programs: loaded before the C library (LD_PRELOAD), it stands between a program and its
 // clocks. JUMPING_CLOCK_AFTER=SECONDS after its first look, what JUMPING_CLOCK names jumps by JUMPING_CLOCK_BY=SECONDS:
-// "wall", the clock on the wall, as when somebody sets it; "all", every clock, as when a machine wakes whose clocks have
-// run on.
+// "wall", the clock on the wall, as when somebody sets it; "all", every clock; "sleep", those that count the time for which
+// a machine is suspended, as when it wakes.
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -44,7 +44,9 @@ time_t jumpOf(clockid_t clock)
 {
     static const char* const which = std::getenv("JUMPING_CLOCK");
     static const double      at = monotonic() + seconds("JUMPING_CLOCK_AFTER"), by = seconds("JUMPING_CLOCK_BY");
-    const bool jumps = clock == CLOCK_REALTIME || (clock == CLOCK_MONOTONIC && which && !std::strcmp(which, "all"));
+    const auto               is    = [](const char* name) { return which && !std::strcmp(which, name); };
+    const bool               jumps = clock == CLOCK_REALTIME || (clock == CLOCK_MONOTONIC && is("all")) ||
+                       (clock == CLOCK_BOOTTIME && (is("all") || is("sleep")));
     return which && jumps && monotonic() > at ? time_t(by) : 0;
 }
 

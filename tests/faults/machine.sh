@@ -47,7 +47,14 @@ else
         succeeds
         steps | awk -v by=$by '$5 <= 0 || $5 > 500 { bad = 1 } { ++ticks } END { exit bad || ticks < 500 }' && pass || complain "$name: ticks are missing, or their times jump"
     done
-    # All clocks run on, as when a machine was suspended: from the jump on there is no force, and a sentence says why.
+    # The machine was suspended, which the session's own clock does not count: the governor is told. Nothing was wrong before.
+    # shellcheck disable=SC2086
+    session 'suspended for 20 s' env LD_PRELOAD="$jump" JUMPING_CLOCK=sleep JUMPING_CLOCK_AFTER=2 JUMPING_CLOCK_BY=20 -- \
+        run $sheet --hand falcon-emulator --seconds 4 --record recorded
+    { [ $status -eq 1 ] && grep -q 'the governor stopped the force' err.txt && pass; } || complain "$name: exit $status: $(cat out.txt err.txt)"
+    steps | awk '$1 > 0.5 && $1 < 1.8 && ($2 != 0 || $3 != 0 || $4 != 0) { pressed = 1 } $1 > 2.6 && ($2 != 0 || $3 != 0 || $4 != 0) { bad = 1 } END { exit bad || !pressed || $1 < 3 }' &&
+        pass || complain "$name: a force is left half a second later, or there was none before"
+    # All clocks run on: from the jump on there is no force, and a sentence says why.
     # shellcheck disable=SC2086
     session 'all clocks jump by 20 s' env LD_PRELOAD="$jump" JUMPING_CLOCK=all JUMPING_CLOCK_AFTER=1 JUMPING_CLOCK_BY=20 -- \
         run $sheet --hand falcon-emulator --seconds 23 --record recorded

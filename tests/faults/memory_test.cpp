@@ -60,6 +60,12 @@ TEST(MemoryFaults, AnObjectIsLoadedOrRefused)
     EXPECT_GT(sweep([&] { static_cast<void>(loadObject(scene)); }, [] {}, 200, kAboveJson), 10);
 }
 
+TEST(MemoryFaults, PointsBecomeAnObjectOrAreRefused)
+{
+    const PointCloud cloud = loadObject(smallScene()).object.cloud();
+    EXPECT_GT(sweep([&] { const SoftObject object(cloud); }, [] {}, 400), 10);
+}
+
 TEST(MemoryFaults, FilesOfPointsAreReadOrRefused)
 {
     const TemporaryFolder folder;

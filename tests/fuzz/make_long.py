@@ -4,7 +4,8 @@
 usage: make_long.py FOLDER RECORDS
 
 A record is a point, a row, a tick, a message, or a comment where a file may hold only a few of anything. Two such folders
-let palp_fuzz_replay --linear compare how long a reader takes for either.
+let palp_fuzz_replay --linear compare how long a reader takes for either. Beside it, for each reader of JSON, a file with lists
+in lists, ten times as deep: whoever prints them by recursion has no stack left.
 """
 import base64
 import json
@@ -55,15 +56,19 @@ def stl(count):
     return "solid long\n" + facets + "endsolid long\n"
 
 
-def glb(count):
-    raw = b"".join(struct.pack("<3f", *p[:3]) for p in points(count))
-    description = json.dumps({
-        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "accessors": [{"bufferView": 0, "componentType": 5126, "count": count // 3 * 3, "type": "VEC3"}],
-        "bufferViews": [{"buffer": 0, "byteLength": len(raw)}], "buffers": [{"byteLength": len(raw)}]}).encode()
+def chunks(description, raw):
+    """A .glb of its two parts, of bytes."""
     description += b" " * (-len(description) % 4)
     return (struct.pack("<4sII", b"glTF", 2, 28 + len(description) + len(raw)) + struct.pack("<I4s", len(description), b"JSON")
             + description + struct.pack("<I4s", len(raw), b"BIN\0") + raw)
+
+
+def glb(count):
+    raw = b"".join(struct.pack("<3f", *p[:3]) for p in points(count))
+    return chunks(json.dumps({
+        "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [{"bufferView": 0, "componentType": 5126, "count": count // 3 * 3, "type": "VEC3"}],
+        "bufferViews": [{"buffer": 0, "byteLength": len(raw)}], "buffers": [{"byteLength": len(raw)}]}).encode(), raw)
 
 
 def volume(count):
@@ -156,12 +161,23 @@ FORMATS = {
 }
 
 
+def deep(count):
+    """For each reader of JSON, a text whose lists it has to refuse."""
+    lists = "[" * 10 * count + "]" * 10 * count
+    return {
+        "problem": '{"size": %s}' % lists, "scene": '{"cloud": %s}' % lists, "plan": '{"title": "t", "conditions": %s}' % lists,
+        "hunt": '{"random": {"count": %s}}' % lists, "recording": 's{"format": 2, "clock": "virtual", "scene": {"cloud": %s}}' % lists,
+        "haply": '{"inverse3": %s}' % lists, "capi": 'j{"window": %s}' % lists,
+        "glb": chunks(b'{"nodes": [{"mesh": %s}], "scenes": [{"nodes": [0]}]}' % lists.encode(), b""),
+    }
+
+
 def main():
     folder, count = pathlib.Path(sys.argv[1]), int(sys.argv[2])
-    for name, write in FORMATS.items():
-        content = write(count)
+    files = [(name, "long", write(count)) for name, write in FORMATS.items()] + [(name, "deep", content) for name, content in deep(count).items()]
+    for name, file, content in files:
         (folder / name).mkdir(parents=True, exist_ok=True)
-        (folder / name / "long").write_bytes(content if isinstance(content, bytes) else content.encode())
+        (folder / name / file).write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
 main()

@@ -21,7 +21,9 @@
 // for more than its input can hold.
 //
 // palp_fuzz_replay --linear SHORT LONG: compares the time that each harness takes for an input and for one with kLonger
-// times as many records, of make_long.py.
+// times as many records, of make_long.py; then gives readers of JSON its deep lists.
+//
+// palp_fuzz_replay --few SEEDS...: the same with few damages, for valgrind.
 
 #include "tests/fuzz/fuzz_expect.h"
 
@@ -93,10 +95,9 @@ public:
     }
 
     /// The input cut short and with bytes changed, at places that are even over it.
-    void damaged(std::vector<std::uint8_t> bytes)
+    void damaged(std::vector<std::uint8_t> bytes, std::size_t places)
     {
-        constexpr std::size_t kPlaces = 250;
-        const std::size_t     step    = bytes.size() / kPlaces + 1;
+        const std::size_t step = bytes.size() / places + 1;
         for (std::size_t at = 0; at < bytes.size(); at += step) {
             whole({bytes.begin(), bytes.begin() + std::ptrdiff_t(at)});
             for (const int change : {0x01, 0x80, 0xFF}) {
@@ -140,9 +141,23 @@ std::vector<std::uint8_t> contentsOf(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-std::vector<std::uint8_t> longOne(const char* folder, const Named& harness)
+/// Returns a file of make_long.py, "long" or "deep"; nothing where there is none.
+std::vector<std::uint8_t> madeOne(const char* folder, const Named& harness, const char* file = "long")
 {
-    return contentsOf(std::filesystem::path(folder) / harness.name / "long");
+    return contentsOf(std::filesystem::path(folder) / harness.name / file);
+}
+
+/// Gives each reader of JSON lists in lists: it ends with a sentence, not by a signal.
+bool bearsDepth(const char* folder)
+{
+    int readers = 0;
+    for (const Named& harness : kHarnesses)
+        if (const auto bytes = madeOne(folder, harness, "deep"); !bytes.empty()) {
+            Replay(harness).whole(bytes);
+            ++readers;
+        }
+    std::printf("%d readers bear lists in lists\n", readers);
+    return readers > 0;
 }
 
 /// Returns whether every harness takes a time in proportion to its input.
@@ -151,7 +166,7 @@ bool isLinear(const char* shorts, const char* longs)
     bool good = true;
     for (const Named& harness : kHarnesses) {
         Replay       replay(harness);
-        const auto   few = longOne(shorts, harness), many = longOne(longs, harness);
+        const auto   few = madeOne(shorts, harness), many = madeOne(longs, harness);
         const double brief = secondsOf(replay, few, 7), lasting = secondsOf(replay, many, 3);
         palp::fuzzVerdicts = {};
         replay.whole(few);
@@ -193,13 +208,15 @@ int main(int count, char** arguments)
 {
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, keep);
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
-    if (count == 4 && std::string(arguments[1]) == "--linear") return isLinear(arguments[2], arguments[3]) ? 0 : 1;
-    bool failed = false;
+    if (count == 4 && std::string(arguments[1]) == "--linear")
+        return isLinear(arguments[2], arguments[3]) && bearsDepth(arguments[3]) ? 0 : 1;
+    const bool few    = count > 1 && std::string(arguments[1]) == "--few";
+    bool       failed = false;
     for (const Named& harness : kHarnesses) {
         Replay             replay(harness);
         std::size_t        seeds = 0;
         palp::FuzzVerdicts wholes; // on seeds as they are
-        for (int n = 1; n < count; ++n) {
+        for (int n = few ? 2 : 1; n < count; ++n) {
             const auto folder = std::filesystem::path(arguments[n]) / harness.name;
             if (!std::filesystem::is_directory(folder)) continue;
             for (const auto& file : std::filesystem::directory_iterator(folder)) {
@@ -208,7 +225,7 @@ int main(int count, char** arguments)
                 replay.whole(bytes);
                 wholes.accepted += palp::fuzzVerdicts.accepted;
                 wholes.refused += palp::fuzzVerdicts.refused;
-                replay.damaged(bytes);
+                replay.damaged(bytes, few ? 40 : 250);
                 ++seeds;
             }
         }

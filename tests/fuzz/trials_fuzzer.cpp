@@ -15,10 +15,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         palp::fuzzExpect(table.rows().size() == before.size());
         palp::study::TrialRow row;
         row.participant = "p";
-        row.trial = row.block = 1;
-        row.task              = "t";
-        row.kind              = "rating";
-        row.answer            = "5";
+        row.trial       = before.size() + 1;
+        row.block       = 1;
+        row.task        = "t";
+        row.kind        = "rating";
+        row.answer      = "5";
         table.append(row);
         palp::fuzzExpect(palp::study::readTrials(path).size() == before.size() + 1);
     });

@@ -113,6 +113,8 @@ TEST(HandPath, WhatNoHandCanDoIsRefusedWithItsLine)
     EXPECT_TRUE(holds(refusal(good), {"hand.csv", "two waypoints", "found 1"}));
     EXPECT_TRUE(holds(refusal(""), {"found 0"}));
     EXPECT_TRUE(holds(refusal(good + std::string(100'000, '1')), {"hand.csv", "longer than 65536 bytes"}));
+    EXPECT_TRUE(holds(refusal(good + "86401,0,0,0\n"), {"hand.csv", "86400 s", "are the times seconds"}));
+    EXPECT_TRUE(holds(refusal(good + "1e300,0,0,0\n"), {"hand.csv", "86400 s"}));
     EXPECT_TRUE(holds(refusal(good + "1,1e308,0,0\n"), {"line 3", "m/s"})) << "beyond what doubles can square";
 }
 
@@ -223,6 +225,30 @@ TEST(GeneratedHand, GoesOnForDaysInTheMemoryOfOnePass)
                 << "a chord: 0.9 m/s2 (1 ms)^2 / 8, " << name(motion) << " at " << t;
         }
     }
+}
+
+TEST(GeneratedHand, IsRepeatedAsItIsHoweverFastOrSlow)
+{
+    const auto refused = [](HandScript s) { return refusalOf([&] { static_cast<void>(makeHand(s, kPlace)); }); };
+    for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan})
+        for (const double speed : {1e-4, 0.05, 3.0, 30.0, 100.0})
+            for (const double radius : {1e-300, 1e-6, 8e-3}) {
+                HandScript fast = script(motion), days = fast;
+                fast.speed = days.speed = speed;
+                fast.radius = days.radius = radius;
+                days.duration             = 86400;
+                if (!refused(fast).empty()) continue; // faster than a hand
+                ASSERT_EQ(refused(days), "");
+                const HandPath hand    = makeHand(days, kPlace);
+                double         deepest = 1;
+                for (int n = 0; n < 2000; ++n) { // in contact, or pressing again and again, for as long as it lasts
+                    const glm::dvec3 p = hand.position(80000 + 1.37e-3 * n);
+                    ASSERT_TRUE(std::isfinite(p.x + p.y + p.z));
+                    deepest = std::min(deepest, glm::dot(p - kPlace.point, kPlace.outward));
+                }
+                const bool falls = motion == HandMotion::press && speed < 1e-2; // for minutes
+                EXPECT_LT(deepest, falls ? 5.1e-3 : 0.0) << name(motion) << " at " << speed << " m/s, " << radius;
+            }
 }
 
 TEST(GeneratedHand, TheSameScriptGivesTheSameBits)

@@ -362,18 +362,24 @@ double lossOfAKill(const std::filesystem::path& place, int afterTicks)
 
 TEST(Recording, AKillCostsAtMostTenMilliseconds)
 {
-    const TemporaryFolder folder;
-    std::vector<double>   losses;
-    for (int round = 0; round < 9; ++round)
-        losses.push_back(lossOfAKill(folder / std::to_string(round), 60 + 37 * round));
+    const char* const   asked  = std::getenv("PALPATE_INSTANTS"); // 500 take three minutes
+    const int           rounds = std::max(asked ? std::atoi(asked) : 0, 9);
+    std::vector<double> losses;
+    for (int round = 0; round < rounds; ++round) {
+        const TemporaryFolder folder;
+        losses.push_back(lossOfAKill(folder / "one", 60 + 37 * round % 331));
+    }
 
     std::ranges::sort(losses);
-    std::string all;
-    for (const double loss : losses) all += std::to_string(loss) + " ";
-    RecordProperty("loss_ms", all);
+    const auto         at = [&](double share) { return losses[std::size_t(share * double(rounds - 1))]; };
+    std::ostringstream all;
+    all << rounds << " kills lost " << at(0) << " to " << at(1) << " ms, the median " << at(0.5) << ", 99 % up to "
+        << at(0.99);
+    RecordProperty("loss_ms", all.str());
+    if (asked) std::cout << all.str() << '\n';
     // On a machine that is busy with other work the writer may be scheduled late once or twice; the median may not.
-    EXPECT_LE(losses[4], 10) << "milliseconds lost: " << all;
-    EXPECT_LE(losses[6], 10) << "milliseconds lost: " << all;
+    EXPECT_LE(at(0.5), 10) << all.str();
+    EXPECT_LE(at(0.75), 10) << all.str();
 }
 
 /// Records until writing stops; then pushing must go on without effect, and one sentence must have been said.

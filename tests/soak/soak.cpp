@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iostream>
 #include <map>
+#include <sstream>
 #include <string>
 
 #include "engine/session/deformation.h"
@@ -23,7 +24,7 @@ constexpr const char* kUsage =
   --batch N       run this batch only
   --sessions N    in a batch (40)
   --part K/N      every N-th batch, from the K-th on, counted from 0 (0/1)
-  --state FILE    go on after the batches that it names, and note each one there
+  --state FILE    go on after the batches that it names, and note there each one that found nothing; a finding ends the run
   --scenes FOLDER (the shipped ones)
 )";
 
@@ -117,9 +118,14 @@ std::uint64_t resumed(const Options& options, Totals& totals)
 {
     std::uint64_t next = options.first;
     std::ifstream in(options.state);
-    for (std::uint64_t seed = 0, number = 0; in >> seed >> number;) {
-        Totals one;
-        if (!(in >> one.batches >> one.sessions >> one.ticks >> one.pressing >> one.troubles >> one.solved)) break;
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream words(line);
+        std::uint64_t      seed = 0, number = 0;
+        Totals             one;
+        char               end = 0;
+        words >> seed >> number >> one.batches >> one.sessions >> one.ticks >> one.pressing >> one.troubles >>
+            one.solved;
+        if (!(words >> end) || end != '.') continue; // cut short by a kill
         if (seed != options.seed || number % options.step != options.first) continue;
         totals.add(one);
         next = std::max(next, number + options.step);
@@ -133,17 +139,19 @@ int run(const Options& options)
     const auto scenes = scenesIn(options.scenes);
     const auto began  = Clock::now();
     Totals     all;
-    bool       good = true;
+    bool       good = false;
     auto       next = options.batch >= 0 ? std::uint64_t(options.batch) : resumed(options, all);
     std::cout << "seed " << options.seed << ", from batch " << next << " on" << std::endl;
     do {
         Totals one;
-        good = runBatch(options, scenes, next, one) && good;
+        good = runBatch(options, scenes, next, one);
         all.add(one);
+        if (!good) break; // it is not noted, so that the next run begins with it
         if (!options.state.empty() && options.batch < 0)
             std::ofstream(options.state, std::ios::app)
+                << '\n'
                 << options.seed << ' ' << next << ' ' << one.batches << ' ' << one.sessions << ' ' << one.ticks << ' '
-                << one.pressing << ' ' << one.troubles << ' ' << one.solved << std::endl;
+                << one.pressing << ' ' << one.troubles << ' ' << one.solved << " ." << std::endl;
         next += options.step;
     } while (options.batch < 0 && std::chrono::duration<double>(Clock::now() - began).count() < options.seconds);
     std::cout << all << std::endl;

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/core/contract.h"
@@ -44,6 +45,9 @@ void GrowingFile::write(std::string_view bytes, std::uint64_t at)
 
 void GrowingFile::append(std::string_view bytes)
 {
+    struct stat now {};
+    if (::fstat(handle_, &now) == 0 && std::uint64_t(now.st_size) < whole_) // zeros would stand in place of what is gone
+        throw Error(path_.string() + ": another program has cut it short");
     write(bytes, whole_ + pending_);
     pending_ += bytes.size();
 }
@@ -52,6 +56,14 @@ void GrowingFile::undo() noexcept
 {
     pending_ = 0;
     if (::ftruncate(handle_, off_t(whole_)) != 0) errno = 0; // then it stays, and no header counts it
+}
+
+bool GrowingFile::isThere() const noexcept
+{
+    struct stat open {
+    }, there{};
+    return ::fstat(handle_, &open) == 0 && ::stat(path_.c_str(), &there) == 0 && open.st_dev == there.st_dev &&
+           open.st_ino == there.st_ino && std::uint64_t(there.st_size) >= whole_;
 }
 
 } // namespace palp

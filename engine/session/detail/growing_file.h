@@ -26,6 +26,9 @@ public:
     void accept() noexcept { whole_ += std::exchange(pending_, 0); }
     void undo() noexcept;
 
+    /// Returns whether the file is still at its path with all that is complete: others may move it, remove it, or cut it.
+    [[nodiscard]] bool isThere() const noexcept;
+
 private:
     std::filesystem::path path_;
     int                   handle_;

@@ -20,6 +20,7 @@
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/shown_text.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/manual.h"
 #include "engine/tools/cli/version.h"
@@ -63,7 +64,7 @@ void refuseUnknownCommand(const CLI::App& app, const std::string& name)
         known.push_back(command->get_name());
         listed += (listed.empty() ? "" : ", ") + command->get_name();
     }
-    throw palp::Error("unknown command \"" + name + "\"" + didYouMean(name, known) + "; known: " + listed +
+    throw palp::Error("unknown command " + palp::inQuotes(name) + didYouMean(name, known) + "; known: " + listed +
                       "; see --help");
 }
 
@@ -79,10 +80,11 @@ std::string onUnknownWords(const CLI::App& app)
     std::string unused;
     for (const std::string& word : app.remaining(true)) {
         if (word.size() > 1 && word.front() == '-')
-            return of + ": unknown option " + word + didYouMean(word, known) + "; see " + of + " --help";
+            return of + ": unknown option " + palp::shownText(word, palp::kMostOfWord) + didYouMean(word, known) +
+                   "; see " + of + " --help";
         unused += (unused.empty() ? "" : " ") + word;
     }
-    return of + ": found \"" + unused + "\" where no further word is expected; see " + of + " --help";
+    return of + ": found " + palp::inQuotes(unused) + " where no further word is expected; see " + of + " --help";
 }
 
 /// Refuses options that are given an empty value.

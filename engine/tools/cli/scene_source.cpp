@@ -12,6 +12,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/shown_text.h"
 #include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
@@ -110,6 +111,8 @@ Scene sceneFrom(const std::string& name, const std::map<std::string, std::string
         static_cast<void>(sampleNamed(std::string_view(name).substr(kSamplePrefix.size())));
     else
         static_cast<void>(openRegularFile(name));
+    if (flags.contains("cloud"))
+        throw Error("--cloud: the cloud is already named, " + shownText(name, 200) + "; omit one of the two");
     overrides.flags.try_emplace("cloud", name); // not as JSON: a file's name may hold bytes that JSON cannot
     return parseScene("{}", name, ".", overrides);
 }

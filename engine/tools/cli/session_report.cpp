@@ -86,7 +86,8 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     std::vector<std::string> said;
     const auto               say = [&](std::string sentence) { said.push_back(std::move(sentence)); };
     if (s.contactTicks == 0)
-        say("the hand never touched: it must start outside of the object, on the side that it presses");
+        say("the hand never touched: it must start outside of the object, on the side that it presses, and reach it in the "
+            "time that it has");
     const bool solvedNone = s.patches == 0 && s.failedPatches > 0;
     if (s.contactTicks > 0 && s.mostForce == 0 && s.fault == GovernorFault::none)
         say("the hand touched, but no force came on: " +

@@ -229,6 +229,7 @@ void demandWhole(const SessionRun& run)
         throw CheckFailed("the force was stopped");
     if (run.recorded && run.recorded->lost > 0)
         throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " ticks were lost");
+    if (run.recorded && run.recorded->stopped) throw CheckFailed(run.folder + ": " + *run.recorded->stopped);
 }
 
 SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const SessionOptions& o, const OnTick& onTick)

@@ -57,7 +57,7 @@ Answers answersIn(const std::vector<std::string>& folders)
             const Json file = readStudyFile(participant);
             if (!plan.empty() && file["plan"] != plan)
                 throw Error(participant.string() + ": expected participants of one study, found another plan than that "
-                                                   "of the first");
+                                                   "of the first; analyse each plan's participants by themselves");
             plan            = file["plan"];
             const auto rows = study::readTrials(participant / "trials.csv");
             all.rows.insert(all.rows.end(), rows.begin(), rows.end());

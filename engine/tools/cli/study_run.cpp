@@ -16,6 +16,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/json_depth.h"
 #include "engine/session/interrupt.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/commit.h"
@@ -112,6 +113,7 @@ public:
     {
         for (const Condition& condition : plan.conditions) felt_.emplace_back(condition.scene);
         agree();
+        lock_.emplace(folder_, "another process runs this participant's trials; end it first");
         table_.emplace(folder_ / "trials.csv");
         demandOurs();
     }
@@ -148,6 +150,7 @@ private:
     std::vector<Trial>               trials_;
     std::filesystem::path            folder_;
     std::vector<Felt>                felt_;
+    std::optional<FolderLock>        lock_;
     std::optional<study::TrialTable> table_;
 };
 
@@ -182,6 +185,13 @@ void Sitting::agree()
                             "; trials could not be compared; choose another --out");
         return;
     }
+    std::error_code none; // no folder yet: the first participant
+    for (const auto& other : std::filesystem::directory_iterator(run_.out, none))
+        if (std::filesystem::exists(other.path() / kStudyFile, ignored) &&
+            readStudyFile(other.path())["plan"] != now["plan"])
+            throw Error((other.path() / kStudyFile).string() + ": expected participants of one plan in " +
+                        run_.out.string() + ", found that " + run_.plan +
+                        " or a scene of it has changed since; choose another --out");
     makeFolder(folder_);
     for (std::size_t k = 0; k < felt_.size(); ++k)
         now["felt_stiffness_N_per_m"][plan_.conditions[k].name] = felt_[k].stiffness(plan_.conditions[k].scene);
@@ -329,8 +339,9 @@ TrialRow Sitting::trial(std::size_t number)
 Json readStudyFile(const std::filesystem::path& participantFolder)
 {
     const std::filesystem::path path = participantFolder / kStudyFile;
-    const Json file = Json::parse(readWhole(path, kLargestFile, "a study's description"), nullptr, false);
-    const bool good = file.is_object() && file.value("format", Json()) == 1 && file.contains("plan") &&
+    const std::string           text = readWhole(path, kLargestFile, "a study's description");
+    const Json                  file = tooDeepAt(text) ? Json() : Json::parse(text, nullptr, false);
+    const bool                  good = file.is_object() && file.value("format", Json()) == 1 && file.contains("plan") &&
                       file["plan"].is_string() && file.contains("participant") && file.contains("clouds");
     if (!good) throw Error(path.string() + ": expected a file of palpate study, found something else");
     return file;

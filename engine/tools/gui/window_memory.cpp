@@ -2,12 +2,13 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/json_depth.h"
 
 namespace palp {
 namespace {
@@ -24,11 +25,15 @@ std::filesystem::path fileOf()
                          : std::filesystem::path();
 }
 
+/// Returns nothing where the file is missing or damaged.
 nlohmann::json remembered()
-{
-    std::ifstream file(fileOf());
-    auto          read = nlohmann::json::parse(file, nullptr, false);
+try {
+    constexpr std::size_t kLargest = 1 << 20; // [bytes]
+    const std::string     text     = readWhole(fileOf(), kLargest, "what windows remember");
+    auto                  read     = tooDeepAt(text) ? nlohmann::json() : nlohmann::json::parse(text, nullptr, false);
     return read.is_object() ? read : nlohmann::json::object();
+} catch (const Error&) {
+    return nlohmann::json::object();
 }
 
 /// Writes one more value to the file; the others stay.

@@ -1,5 +1,6 @@
 #include "engine/tools/study/trial_table.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <functional>
@@ -10,6 +11,8 @@
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/shown_text.h"
+#include "engine/tools/study/study_plan.h"
 
 namespace palp::study {
 namespace {
@@ -135,8 +138,28 @@ TrialRow rowOf(std::string_view text, const std::string& where)
     TrialRow row;
     for (std::size_t k = 0; k < cells.size(); ++k)
         if (!kColumns[k].read(row, cells[k]))
-            throw Error(where + ": column " + kColumns[k].name + ": expected a number, found \"" + cells[k] + "\"");
+            throw Error(where + ": column " + kColumns[k].name + ": expected a number, found " + inQuotes(cells[k]));
     return row;
+}
+
+/// Refuses a row that no participant can have given: whoever counts answers has to be sure of them.
+void demandSense(const TrialRow& row, std::size_t trial, const std::string& where)
+{
+    struct Known {
+        std::vector<std::string_view> answers;
+        const char*                   words;
+    };
+    const auto known = [&]() -> Known {
+        if (row.kind == name(TaskKind::rating)) return {{"1", "2", "3", "4", "5"}, "1 to 5"};
+        if (row.kind == name(TaskKind::yesNo)) return {{"yes", "no"}, "yes or no"};
+        if (row.kind == name(TaskKind::twoAlternative)) return {{"first", "second"}, "first or second"};
+        throw Error(where + ": column kind: expected rating, yes-no or two-alternative, found " + inQuotes(row.kind));
+    }();
+    if (row.trial != trial)
+        throw Error(where + ": column trial: expected " + std::to_string(trial) + ", found " +
+                    std::to_string(row.trial) + "; was the table changed by another program?");
+    if (std::ranges::find(known.answers, row.answer) == known.answers.end())
+        throw Error(where + ": column answer: expected " + known.words + ", found " + inQuotes(row.answer));
 }
 
 /// Returns all whole lines of a table.
@@ -156,9 +179,10 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
     std::vector<TrialRow> rows;
     std::size_t           number = 2;
     for (std::size_t begin = head.size(); begin < text.size(); ++number) {
-        const std::size_t end = text.find('\n', begin);
-        rows.push_back(rowOf(std::string_view(text).substr(begin, end - begin),
-                             file.string() + ": line " + std::to_string(number)));
+        const std::size_t end   = text.find('\n', begin);
+        const std::string where = file.string() + ": line " + std::to_string(number);
+        rows.push_back(rowOf(std::string_view(text).substr(begin, end - begin), where));
+        demandSense(rows.back(), rows.size(), where);
         begin = end + 1;
     }
     return rows;

@@ -123,6 +123,7 @@ exec 3>keys
 printf '\n2\n' >&3
 tries=0
 until [ -f study/P02/trials.csv ] && [ "$(wc -l <study/P02/trials.csv)" -eq 2 ] || [ $tries -ge 300 ]; do sleep 0.1; tries=$((tries + 1)); done
+bad 'two at one participant' "study/P02: another process runs this participant's trials" study plan.json --participant P02 --out study --clock virtual
 kill -9 $process; exec 3>&-; wait $process 2>/dev/null
 printf '\n3\n\n\n2\n' >input
 good 'the killed one goes on' study plan.json --participant P02 --out study --clock virtual --json
@@ -136,6 +137,10 @@ holds 'predicted, not measured'
 grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'
 sed 's/4e5/5e5/' plan.json >changed.json
 bad 'the plan has changed' 'has changed since' study changed.json --participant P01 --out study --clock virtual
+bad 'a new participant with another plan' 'choose another --out' study changed.json --participant P06 --out study --clock virtual
+[ ! -e study/P06 ] && pass || complain 'a refused participant has a folder'
+cp -r study answers && sed -i '3s/,2,1,/,7,1,/' answers/P01/trials.csv
+bad 'a table without a trial' 'P01/trials.csv: line 3: column trial: expected 2, found 7' study --analyse answers
 sed -i 's/4 mm/5 mm/' sheet.json
 bad 'a scene of it has changed' 'has changed since' study plan.json --participant P01 --out study --clock virtual
 sed -i 's/5 mm/4 mm/' sheet.json

@@ -97,6 +97,11 @@ TEST(TrialTable, ATornHeaderIsWrittenAnewAndOthersTablesAreRefused)
     refused(header + "P01,1\n", "line 2: expected 17 columns, found 2");
     refused(header + "P01,one,1,,,,,,,,1,1,,,1,1,\n", "column trial");
     refused(header + "P01,1,1,,,,,,,maybe,1,1,,,1,1,\n", "column correct");
+    refused(header + "P01,1,1,,taste,,,,4,,1,1,,,1,1,\n", "column kind: expected rating, yes-no or two-alternative");
+    refused(header + "P01,2,1,,rating,,,,4,,1,1,,,1,1,\n", "line 2: column trial: expected 1, found 2");
+    refused(header + "P01,1,1,,rating,,,,6,,1,1,,,1,1,\n", "column answer: expected 1 to 5, found \"6\"");
+    refused(header + "P01,1,1,,yes-no,,,,first,,1,1,,,1,1,\n", "expected yes or no");
+    refused(header + "P01,1,1,,two-alternative,,,,banana,,1,1,,,1,1,\n", "expected first or second");
 }
 
 } // namespace

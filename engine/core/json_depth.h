@@ -1,0 +1,16 @@
+#pragma once
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+namespace palp {
+
+/// Levels that lists and objects may have in JSON from outside [1]; ours have six at most. The library reads any number,
+/// but copies, compares and prints by recursion: 200 kB of brackets overflowed the stack.
+inline constexpr int kDeepestJson = 100;
+
+/// Returns the byte at which a text opens a level beyond kDeepestJson; nothing if it never does. What is no JSON is read
+/// as JSON up to where a parser would stop at the latest; comments, /* */ and //, are skipped.
+[[nodiscard]] std::optional<std::size_t> tooDeepAt(std::string_view json) noexcept;
+
+} // namespace palp
