@@ -5,10 +5,12 @@
 #   prepare_packages LIST    makes sure that the packages are there
 #   prepare_build DIR ARGS   configures (Release) and builds the folder DIR
 
-# What the library and the programs are made of, what the tests add, and what makes Debian packages; third_party_notes.md has a row for each.
+# What the library and the programs are made of, what the tests add, what makes Debian packages, and what the gate of a release
+# adds; third_party_notes.md has a row for each.
 packages_build='g++ cmake make libembree-dev libtbb-dev libeigen3-dev libglm-dev libcli11-dev nlohmann-json3-dev libstb-dev zlib1g-dev fonts-dejavu-core libvulkan-dev libusb-1.0-0-dev libhidapi-dev libglfw3-dev libimgui-dev pkg-config glslang-tools mesa-vulkan-drivers'
 packages_tests='python3 python3-numpy libgtest-dev libbenchmark-dev libnanoflann-dev libsuitesparse-dev libopenblas0-serial spirv-tools vulkan-validationlayers xvfb xauth xdotool libx11-dev dpkg-dev file'
 packages_package='dpkg-dev file'
+packages_gate='valgrind clang chromium-common' # of a release's gate: memory, another compiler, another Vulkan driver
 
 assume_yes= no_install= dry_run=
 prepare_options() {

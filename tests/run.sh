@@ -118,7 +118,7 @@ test_flavour() {
 }
 
 # shellcheck disable=SC2086
-prepare_packages $packages_build $packages_tests
+prepare_packages $packages_build $packages_tests ${all:+$packages_package $packages_gate}
 top=${PALPATE_BUILD:-build}
 if [ -n "$all" ]; then
     . tests/release_gate.sh

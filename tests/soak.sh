@@ -36,14 +36,14 @@ build=${PALPATE_BUILD:-build}
 
 mkdir -p "$build/soak"
 pids= part=0
+trap 'kill $pids 2>/dev/null; exit 130' INT
+trap 'kill $pids 2>/dev/null; exit 143' TERM
 while [ $part -lt "$jobs" ]; do
     "$build/bin/palp_soak" --seed "$seed" --seconds $((minutes * 60)) --part "$part/$jobs" \
         --state "$build/soak/seed_${seed}_part_${part}_of_$jobs" --scenes samples/scenes &
     pids="$pids $!"
     part=$((part + 1))
 done
-# shellcheck disable=SC2086
-trap 'kill $pids 2>/dev/null; exit 130' INT TERM
 failed=0
 for pid in $pids; do wait "$pid" || failed=1; done
 exit $failed

@@ -12,7 +12,7 @@ for name in $(cat CMakeLists.txt engine/CMakeLists.txt engine/*/CMakeLists.txt t
     sed -n 's/#.*//; s/.*find_package(\([A-Za-z0-9_]*\).*/\1/p' | sort -u); do
     [ "$name" = Threads ] || row "$name" 'find_package'
 done
-for package in $packages_build $packages_tests $packages_package; do row "$package" 'package list in engine/prepare.sh'; done
+for package in $packages_build $packages_tests $packages_package $packages_gate; do row "$package" 'package list in engine/prepare.sh'; done
 
 [ $bad -eq 0 ] && echo 'every dependency has a row'
 exit $bad

@@ -9,5 +9,7 @@ replay=$build/bin/palp_fuzz_replay
 command -v valgrind >/dev/null 2>&1 || { echo 'valgrind is missing; it is a package of that name'; exit 77; }
 seeds=$(mktemp -d)
 trap 'rm -rf "$seeds"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 sh tests/fuzz/make_seeds.sh "$seeds"
 valgrind --quiet --error-exitcode=1 --exit-on-first-error=yes --num-callers=30 "$replay" --few "$seeds" tests/fuzz/found

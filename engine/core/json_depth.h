@@ -9,8 +9,8 @@ namespace palp {
 /// but copies, compares and prints by recursion: 200 kB of brackets overflowed the stack.
 inline constexpr int kDeepestJson = 100;
 
-/// Returns the byte at which a text opens a level beyond kDeepestJson; nothing if it never does. What is no JSON is read
-/// as JSON up to where a parser would stop at the latest; comments, /* */ and //, are skipped.
+/// Returns the byte at which a text opens a level beyond kDeepestJson; nothing if it never does. Comments, /* */ and
+/// //, are skipped. Text that is no JSON may be judged wrongly, but only behind the byte where a parser stops.
 [[nodiscard]] std::optional<std::size_t> tooDeepAt(std::string_view json) noexcept;
 
 } // namespace palp

@@ -93,7 +93,7 @@ JsonObject JsonObject::parse(std::string_view text, std::string where)
 {
     if (const auto deep = tooDeepAt(text))
         throw Error(where + ": line " + std::to_string(1 + std::ranges::count(text.substr(0, *deep), '\n')) +
-                    ": expected lists and objects in at most " + std::to_string(kDeepestJson) +
+                    ": expected lists and objects of JSON in at most " + std::to_string(kDeepestJson) +
                     " levels, found more; is a bracket missing?");
     auto node = std::make_shared<Node>();
     try {

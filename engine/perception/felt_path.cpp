@@ -74,7 +74,7 @@ HandPath strokingHand(const FeltLine& line, const HandScript& script, const Soft
                                                 glm::dot(d, from.north) * north +
                                                 glm::dot(d, from.normal) * from.normal});
     }
-    return draped(HandPath(std::move(waypoints), "stroke"), line.middle, object);
+    return draped(HandPath(std::move(waypoints), "stroke", flat.repeatsFrom()), line.middle, object);
 }
 
 FeltRange rangeOf(const std::vector<double>& along, const std::vector<double>& logarithms)

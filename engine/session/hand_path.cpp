@@ -450,10 +450,21 @@ HandPath draped(const HandPath& hand, const HandPlace& place, const SoftObject& 
     const glm::dvec3 first = inPlaneOf(waypoints.front().position);
     const double     steps = radius > 0 ? std::ceil(glm::length(first) / spacing) : 0;
     for (int i = 0; i < int(steps); ++i) follow(double(i) / steps * first);
-    for (HandPose& waypoint : waypoints) {
+    std::vector<double> heights; // [m]
+    heights.reserve(waypoints.size());
+    for (const HandPose& waypoint : waypoints) {
         if (radius > 0) follow(inPlaneOf(waypoint.position));
-        waypoint.position += height * place.outward;
+        heights.push_back(height);
     }
+    if (const auto from = hand.repeatsFrom()) { // a height hangs on the way there; what is open closes evenly
+        const auto   after = std::ranges::upper_bound(waypoints, *from, {}, &HandPose::time);
+        const auto   k     = std::size_t(after - waypoints.begin());
+        const double share = (*from - waypoints[k - 1].time) / (after->time - waypoints[k - 1].time);
+        const double open  = std::lerp(heights[k - 1], heights[k], share) - heights.back();
+        const double lasts = waypoints.back().time - *from; // [s]
+        for (std::size_t n = k; n < waypoints.size(); ++n) heights[n] += (waypoints[n].time - *from) / lasts * open;
+    }
+    for (std::size_t k = 0; k < waypoints.size(); ++k) waypoints[k].position += heights[k] * place.outward;
     return HandPath(std::move(waypoints), "hand", hand.repeatsFrom());
 }
 

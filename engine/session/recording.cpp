@@ -89,6 +89,7 @@ public:
             ticks_.write(RowsHeader::counting(rows_ + records.size()), header_.countAt());
         } catch (const Error&) {
             ticks_.undo();
+            if (ticks_.isCut()) throw;
             try { // the header lies within blocks that the file has, so the rows found no room; but if not:
                 ticks_.write(RowsHeader::counting(rows_), header_.countAt());
             } catch (const Error&) { // the first complaint is the one to report
@@ -117,6 +118,7 @@ public:
     }
 
     [[nodiscard]] bool          areThere() const noexcept { return ticks_.isThere() && markers_.isThere(); }
+    [[nodiscard]] bool          areCut() const noexcept { return ticks_.isCut() || markers_.isCut(); }
     [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
     [[nodiscard]] std::uint64_t marked() const noexcept { return marked_; }
 
@@ -281,12 +283,12 @@ struct Recording::Impl {
         if (writer.joinable()) {
             finishing.store(true, std::memory_order_release);
             writer.join();
-            const bool there = files.areThere();
-            if (!there && !why)
+            const bool there = files.areThere(), whole = there && !files.areCut();
+            if (!whole && !why)
                 stop(folder.string() + ": another program has removed, moved or cut the files of the recording");
-            const std::uint64_t rows = there ? files.rows() : 0, marked = there ? files.marked() : 0;
+            const std::uint64_t rows = whole ? files.rows() : 0, marked = whole ? files.marked() : 0;
             report = {rows, pushed - rows, longestGap, why, marked, marksHeard - marked};
-            describeEnd();
+            if (there) describeEnd(); // else another recording may have the folder's name
         }
         return report;
     }

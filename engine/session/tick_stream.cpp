@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "engine/core/contract.h"
-#include "engine/session/lsl_outlet.h"
 #include "engine/session/detail/quiet_thread.h"
+#include "engine/session/lsl_outlet.h"
 #include "engine/session/udp_outlet.h"
 
 namespace palp {

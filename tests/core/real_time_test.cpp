@@ -38,7 +38,7 @@ TEST(RealTime, AProgramThatFitsIntoItsLimitOfLockedMemoryStillStartsThreads)
     if (limit.rlim_max < kEnough) {
         limit.rlim_max = kEnough;
         if (setrlimit(RLIMIT_MEMLOCK, &limit) != 0)
-            GTEST_SKIP() << "this user may not set the limit so high"; // nor may each root
+            GTEST_SKIP() << "this user may not set the limit so high"; // root in some containers neither
     }
     EXPECT_EXIT(askBelowALimit(), testing::ExitedWithCode(0), "");
 }

@@ -291,6 +291,25 @@ TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)
     EXPECT_LT(hand.fastest(), 2 * flat.fastest());
 }
 
+TEST(GeneratedHand, DrapedItIsRepeatedWithoutAJump)
+{
+    const SpatialLaw constant{.kind = SpatialLaw::Kind::constant, .from = 1e6};
+    const SoftObject object(makeSample(sampleNamed("hemisphere"), 4'000, 3, constant));
+    const HandPlace  top{{0, 0, 50e-3}, {0, 0, 1}};
+    for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan}) {
+        HandScript s        = script(motion);
+        s.radius            = 20e-3;
+        s.duration          = 86400;
+        const HandPath hand = draped(makeHand(s, top), top, object);
+        ASSERT_TRUE(hand.repeatsFrom());
+        const double seam = hand.duration();
+        EXPECT_LT(glm::distance(hand.position(seam), hand.position(std::nextafter(seam, 1e9))), 1e-7) << name(motion);
+        for (double t = seam - 0.1; t < seam + 0.1; t += 1e-3)
+            ASSERT_LT(glm::distance(hand.position(t), hand.position(t + 1e-3)), 1.01e-3 * hand.fastest())
+                << name(motion);
+    }
+}
+
 TEST(GeneratedHand, DrapedOverAThinBodyItKeepsToTheTouchedFace)
 {
     // Two sheets, 0.5 mm between points: the other face lies within the radius of the mean height.

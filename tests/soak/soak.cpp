@@ -116,7 +116,8 @@ bool runBatch(const Options& options, const std::vector<ShippedScene>& scenes, s
 /// Reads the totals of the batches that were run, and the number of the next.
 std::uint64_t resumed(const Options& options, Totals& totals)
 {
-    std::uint64_t next = options.first;
+    std::uint64_t next    = options.first;
+    int           ignored = 0;
     std::ifstream in(options.state);
     for (std::string line; std::getline(in, line);) {
         std::istringstream words(line);
@@ -125,11 +126,15 @@ std::uint64_t resumed(const Options& options, Totals& totals)
         char               end = 0;
         words >> seed >> number >> one.batches >> one.sessions >> one.ticks >> one.pressing >> one.troubles >>
             one.solved;
-        if (!(words >> end) || end != '.') continue; // cut short by a kill
+        if (!(words >> end) || end != '.') { // cut short by a kill
+            ignored += !line.empty();
+            continue;
+        }
         if (seed != options.seed || number % options.step != options.first) continue;
         totals.add(one);
         next = std::max(next, number + options.step);
     }
+    if (ignored > 0) std::cout << options.state << ": " << ignored << " lines are not whole, and ignored" << std::endl;
     return next;
 }
 

@@ -45,9 +45,8 @@ void GrowingFile::write(std::string_view bytes, std::uint64_t at)
 
 void GrowingFile::append(std::string_view bytes)
 {
-    struct stat now {};
-    if (::fstat(handle_, &now) == 0 && std::uint64_t(now.st_size) < whole_) // zeros would stand in place of what is gone
-        throw Error(path_.string() + ": another program has cut it short");
+    cut_ = isCut(); // zeros would stand in place of what is gone
+    if (cut_) throw Error(path_.string() + ": another program has cut it short");
     write(bytes, whole_ + pending_);
     pending_ += bytes.size();
 }
@@ -55,15 +54,24 @@ void GrowingFile::append(std::string_view bytes)
 void GrowingFile::undo() noexcept
 {
     pending_ = 0;
+    if (cut_) return;                                        // it would grow again, of zeros
     if (::ftruncate(handle_, off_t(whole_)) != 0) errno = 0; // then it stays, and no header counts it
 }
 
 bool GrowingFile::isThere() const noexcept
 {
-    struct stat open {
+    struct stat own {
     }, there{};
-    return ::fstat(handle_, &open) == 0 && ::stat(path_.c_str(), &there) == 0 && open.st_dev == there.st_dev &&
-           open.st_ino == there.st_ino && std::uint64_t(there.st_size) >= whole_;
+    if (::stat(path_.c_str(), &there) != 0) return errno != ENOENT && errno != ENOTDIR;
+    if (::fstat(handle_, &own) != 0) return true;
+    const bool isOther = own.st_dev != there.st_dev || own.st_ino != there.st_ino;
+    return !isOther || (own.st_nlink > 0 && own.st_size == there.st_size); // some servers number files anew
+}
+
+bool GrowingFile::isCut() const noexcept
+{
+    struct stat own {};
+    return cut_ || (::fstat(handle_, &own) == 0 && std::uint64_t(own.st_size) < whole_);
 }
 
 } // namespace palp

@@ -26,14 +26,17 @@ public:
     void accept() noexcept { whole_ += std::exchange(pending_, 0); }
     void undo() noexcept;
 
-    /// Returns whether the file is still at its path with all that is complete: others may move it, remove it, or cut it.
+    /// Returns false if another program has moved or removed the file; true where the system does not say.
     [[nodiscard]] bool isThere() const noexcept;
+    /// Returns whether another program has cut the complete part.
+    [[nodiscard]] bool isCut() const noexcept;
 
 private:
     std::filesystem::path path_;
     int                   handle_;
     std::uint64_t         whole_   = 0; ///< [bytes]
     std::uint64_t         pending_ = 0; ///< [bytes]
+    bool                  cut_     = false;
 };
 
 } // namespace palp

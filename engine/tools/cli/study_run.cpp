@@ -161,6 +161,18 @@ std::string wordOf(const Json& value)
     return text.substr(0, text.find('@'));
 }
 
+/// Returns the folders of a study's participants; none where the study is new.
+std::vector<std::filesystem::path> othersIn(const std::filesystem::path& study)
+{
+    std::vector<std::filesystem::path> found;
+    std::error_code                    failure;
+    for (std::filesystem::directory_iterator entry(study, failure), end; !failure && entry != end;
+         entry.increment(failure))
+        if (std::error_code ignored; std::filesystem::exists(entry->path() / kStudyFile, ignored))
+            found.push_back(entry->path());
+    return found;
+}
+
 /// Writes the study's file once; later runs must agree with it.
 void Sitting::agree()
 {
@@ -185,13 +197,10 @@ void Sitting::agree()
                             "; trials could not be compared; choose another --out");
         return;
     }
-    std::error_code none; // no folder yet: the first participant
-    for (const auto& other : std::filesystem::directory_iterator(run_.out, none))
-        if (std::filesystem::exists(other.path() / kStudyFile, ignored) &&
-            readStudyFile(other.path())["plan"] != now["plan"])
-            throw Error((other.path() / kStudyFile).string() + ": expected participants of one plan in " +
-                        run_.out.string() + ", found that " + run_.plan +
-                        " or a scene of it has changed since; choose another --out");
+    for (const auto& other : othersIn(run_.out))
+        if (readStudyFile(other)["plan"] != now["plan"])
+            throw Error((other / kStudyFile).string() + ": expected participants of one plan in " + run_.out.string() +
+                        ", found that " + run_.plan + " or a scene of it has changed since; choose another --out");
     makeFolder(folder_);
     for (std::size_t k = 0; k < felt_.size(); ++k)
         now["felt_stiffness_N_per_m"][plan_.conditions[k].name] = felt_[k].stiffness(plan_.conditions[k].scene);

@@ -394,7 +394,7 @@ until [ -n "$(find stopped -name ticks.npy -size +4k 2>/dev/null)" ] || [ $n -gt
 kill -TERM $session
 wait $session && grep -q '"finished": true' stopped/session.json && passed=$((passed + 1)) || complain "a session that is stopped: exit $? $(cat err.txt)"
 # Whoever removes, moves or cuts a recording while it is made is told that it is lost.
-for harm in 'rm -r stopped' 'mv stopped away' 'truncate -s 0 stopped/ticks.npy'; do
+for harm in 'rm -r stopped' 'mv stopped away' 'truncate -s 4000 stopped/ticks.npy'; do
     rm -rf stopped away
     "$palpate" run scene.json --clock virtual --seconds 3000 --record stopped >out.txt 2>err.txt &
     session=$!
@@ -406,6 +406,7 @@ for harm in 'rm -r stopped' 'mv stopped away' 'truncate -s 0 stopped/ticks.npy';
     [ $? -eq 1 ] && grep -q 'palpate: .*stopped.*: another program has .*cut' err.txt && passed=$((passed + 1)) ||
         complain "a recording after $harm: $(cat out.txt err.txt)"
 done
+[ "$(wc -c <stopped/ticks.npy)" -le 4000 ] && grep -q '"samples": 0' stopped/session.json && passed=$((passed + 1)) || complain 'what was cut has grown again, or is counted'
 bad 'the cloud twice' '--cloud: the cloud is already named, sample:palm' touch sample:palm --cloud sample:skin
 bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
 python3 -c "
