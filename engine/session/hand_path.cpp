@@ -253,7 +253,7 @@ public:
     [[nodiscard]] double repetition() const
     {
         const double one = s_.motion == HandMotion::press ? 2 * descent_ : 2 * std::numbers::pi * s_.radius / s_.speed;
-        return one > kTick ? one * std::ceil(1 / one) : 1; // faster than a tick it is nothing that a servo can follow
+        return one * std::ceil(1 / one);
     }
 
 private:

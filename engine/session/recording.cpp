@@ -242,6 +242,7 @@ struct Recording::Impl {
         noted                       = true;
         description["realtime_ns"]  = clocks.realtime;
         description["monotonic_ns"] = clocks.monotonic;
+        if (!files.areThere()) return; // finish() says so
         try {
             writeDescription(folder, description);
         } catch (const Error&) { // the one from the start is still there

@@ -294,13 +294,12 @@ TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)
 TEST(GeneratedHand, DrapedItIsRepeatedWithoutAJump)
 {
     const SpatialLaw constant{.kind = SpatialLaw::Kind::constant, .from = 1e6};
-    const SoftObject object(makeSample(sampleNamed("hemisphere"), 4'000, 3, constant));
+    // Of a dozen seeds the one whose heights hang most on the way there: without the closing the circle jumps by 0.12 mm.
+    const SoftObject object(makeSample(sampleNamed("hemisphere"), 4'000, 12, constant));
     const HandPlace  top{{0, 0, 50e-3}, {0, 0, 1}};
     for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan}) {
-        HandScript s        = script(motion);
-        s.radius            = 20e-3;
-        s.duration          = 86400;
-        const HandPath hand = draped(makeHand(s, top), top, object);
+        const HandScript s{.motion = motion, .radius = 35e-3, .duration = 86400};
+        const HandPath   hand = draped(makeHand(s, top), top, object);
         ASSERT_TRUE(hand.repeatsFrom());
         const double seam = hand.duration();
         EXPECT_LT(glm::distance(hand.position(seam), hand.position(std::nextafter(seam, 1e9))), 1e-7) << name(motion);

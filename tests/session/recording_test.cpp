@@ -382,6 +382,66 @@ TEST(Recording, AKillCostsAtMostTenMilliseconds)
     EXPECT_LE(at(0.75), 10) << all.str();
 }
 
+/// A recording of a hundred ticks, all of them on the disk.
+class Disturbed {
+public:
+    Disturbed()
+    {
+        for (int i = 0; i < 100; ++i) recording.pushWaiting(recordNumber(i));
+        while (std::filesystem::file_size(folder / "run" / "ticks.npy") < 100 * tickRowBytes())
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(std::chrono::milliseconds(20)); // and described
+    }
+
+    TemporaryFolder          folder;
+    std::vector<std::string> said;
+    Recording                recording{folder / "run", someInfo(), [this](const std::string& s) { said.push_back(s); }};
+};
+
+TEST(Recording, OneThatWasMovedIsLostAndTheFolderThatHasItsNameNowIsLeftAlone)
+{
+    Disturbed disturbed;
+    std::filesystem::rename(disturbed.folder / "run", disturbed.folder / "away");
+    std::filesystem::create_directory(disturbed.folder / "run");
+    for (const char* file : {"run/session.json", "run/ticks.npy", "run/markers.jsonl"})
+        static_cast<void>(disturbed.folder.write(file, "another's"));
+
+    const RecordingReport report = disturbed.recording.finish();
+
+    EXPECT_EQ(report.ticks, 0u);
+    EXPECT_EQ(report.lost, 100u);
+    ASSERT_EQ(disturbed.said.size(), 1u);
+    EXPECT_TRUE(holds(disturbed.said[0], {"run: another program has removed, moved or cut"}));
+    EXPECT_EQ(contentsOf(disturbed.folder / "run/session.json"), "another's");
+}
+
+TEST(Recording, OneThatWasCutDoesNotGrowAgain)
+{
+    for (const std::size_t left : {0, 4000}) { // [bytes] of some 22 000
+        Disturbed disturbed;
+        std::filesystem::resize_file(disturbed.folder / "run/ticks.npy", left);
+        for (int i = 100; i < 200; ++i) disturbed.recording.pushWaiting(recordNumber(i));
+
+        const RecordingReport report = disturbed.recording.finish();
+
+        EXPECT_EQ(report.ticks, 0u);
+        EXPECT_EQ(report.lost, 200u);
+        ASSERT_EQ(disturbed.said.size(), 1u);
+        EXPECT_TRUE(holds(disturbed.said[0], {"after 100 ticks", "ticks.npy: another program has cut it short"}));
+        EXPECT_EQ(std::filesystem::file_size(disturbed.folder / "run/ticks.npy"), left);
+    }
+}
+
+TEST(Recording, OneThatWasMovedAndBroughtBackIsWhole)
+{
+    Disturbed disturbed;
+    std::filesystem::rename(disturbed.folder / "run", disturbed.folder / "away");
+    std::filesystem::rename(disturbed.folder / "away", disturbed.folder / "run");
+
+    EXPECT_EQ(disturbed.recording.finish().ticks, 100u);
+    EXPECT_TRUE(disturbed.said.empty());
+}
+
 /// Records until writing stops; then pushing must go on without effect, and one sentence must have been said.
 void recordUntilFull(const std::filesystem::path& folder, const char* reason)
 {
