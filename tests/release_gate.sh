@@ -76,7 +76,7 @@ release_gate() {
     step validation '' test_flavour "$top" -L "$slow" "$@"
     step 'fuzz replay' '' test_flavour "$top" -R '^fuzz$'
     step valgrind '' sh tests/valgrind.sh
-    step soak '' "$top/bin/palp_soak" --seconds 60 --scenes samples/scenes
+    step soak '' "$top/bin/palp_soak" --seed "$(date +%Y%m%d)" --seconds 60 --scenes samples/scenes
     step install '' test_flavour "$top" -R '^install$'
     step package '' gate_packages
     step asan '' gate_flavour asan "$top/asan" -LE "$again" "$@"

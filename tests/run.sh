@@ -91,10 +91,12 @@ run_on_driver() (
 again='shader-validation|shader-gpu-assisted|pages' # labels that sanitized builds leave out
 # What ThreadSanitizer leaves out, an hour of it. Most of these tests start no thread of ours: sums of numerics, kernels on
 # the host, sessions in virtual time. Those of whole bodies start only threads that other tests of the pipeline start too.
-without_tsan='^(contact|chart|fit|perception|plot)\.|^host-|^plate\.(LargeLaw|MultigridShell|PressDeep|ReferenceShell|ShearWork)'
+without_tsan='^(contact|chart|fit|perception|plot)\.|^host-|^plate\.(LargeLaw|MultigridShell|PressDeep|ReferenceShell|ShearWork|CellsThatAreNotSquare|RigidityThatJumps|Smooth/|All/ConstantRigidity)'
 without_tsan="$without_tsan"'|^pipeline\.(Calculix|ComplianceTracker|TouchedSurface|TableSolve|WholeObject|ShellPatch\.FeelsHardly)|^device\.FalconCalibration'
 without_tsan="$without_tsan"'|^session\.(Reversals|ClosedStrokes|FalconLag|Taps|Weight|Strokes|Tissue)\.|^session\.On/TenMinutes'
-without_tsan="$without_tsan"'|^session\.(SceneMesh\.BadMeshes|VirtualSession\.AHomogeneous|On/ScaledSessions\.APressedWall)|^cloud\.SurfaceSurvey\.FindsTheNoiseOf|^(fuzz|prepare)$'
+without_tsan="$without_tsan"'|^session\.(SceneMesh\.BadMeshes|VirtualSession\.AHomogeneous|On/ScaledSessions\.APressedWall)|^cloud\.(SurfaceSurvey\.FindsTheNoiseOf|MeshPoints\.EveryPlace)|^(fuzz|prepare|display_faults)$'
+# The emulated Haply's threads and the generated hands' are those of another test of the same suite.
+without_tsan="$without_tsan"'|^session\.(Below\.ANodule|LargeDeflection\.AClosedStroke|GeneratedHand\.IsRepeated|On/LineSessions\.AnArm.*haply)|^pipeline\.(DenseCloud|LargeTouch)\.'
 
 # build_flavour plain|asan|tsan|other FOLDER
 build_flavour() {

@@ -23,20 +23,42 @@ std::string shortened(std::string_view text)
     return shownText(text, kMostOfValue);
 }
 
-/// A parser callback that throws at the second use of a key in one object; the library alone would keep the last one.
-class RefuseTwins {
+/// Throws at the second use of a key in one object; the library alone would keep the last one. It reads by itself: a
+/// callback of the library's own parser looks, at the end of each object, at all that its list holds so far, so that a
+/// megabyte of small objects took it half a minute.
+class RefuseTwins final : public nlohmann::json_sax<Json> {
 public:
     explicit RefuseTwins(const std::string& where) : where_(where) {}
 
-    bool operator()(int, Json::parse_event_t event, const Json& value)
+    bool start_object(std::size_t) override
     {
-        if (event == Json::parse_event_t::object_start) open_.emplace_back();
-        if (event == Json::parse_event_t::object_end) open_.pop_back();
-        if (event == Json::parse_event_t::key && !open_.back().insert(value.get<std::string>()).second)
-            throw Error(where_ + ": the key " + shortened(value.dump(-1, ' ', false, Json::error_handler_t::replace)) +
+        open_.emplace_back();
+        return true;
+    }
+    bool end_object() override
+    {
+        open_.pop_back();
+        return true;
+    }
+    bool key(std::string& name) override
+    {
+        if (!open_.back().insert(name).second)
+            throw Error(where_ + ": the key " +
+                        shortened(Json(name).dump(-1, ' ', false, Json::error_handler_t::replace)) +
                         " is given twice in one object");
         return true;
     }
+
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(Json::number_integer_t) override { return true; }
+    bool number_unsigned(Json::number_unsigned_t) override { return true; }
+    bool number_float(Json::number_float_t, const std::string&) override { return true; }
+    bool string(std::string&) override { return true; }
+    bool binary(Json::binary_t&) override { return true; }
+    bool start_array(std::size_t) override { return true; }
+    bool end_array() override { return true; }
+    bool parse_error(std::size_t, const std::string&, const nlohmann::detail::exception&) override { return false; }
 
 private:
     const std::string&                 where_;
@@ -98,10 +120,12 @@ JsonObject JsonObject::parse(std::string_view text, std::string where)
     auto node = std::make_shared<Node>();
     try {
         constexpr bool kThrow = true, kIgnoreComments = true;
-        node->value = Json::parse(text.begin(), text.end(), RefuseTwins(where), kThrow, kIgnoreComments);
+        node->value = Json::parse(text.begin(), text.end(), nullptr, kThrow, kIgnoreComments);
     } catch (const Json::exception& failure) {
         throw Error(where + ": not valid JSON: " + reasonOf(failure));
     }
+    RefuseTwins twins(where);
+    Json::sax_parse(text.begin(), text.end(), &twins, Json::input_format_t::json, true, true); // whole, with comments
     if (!node->value.is_object())
         throw Error(where + ": expected a JSON object {...}, found " + std::string(node->value.type_name()));
     return JsonObject(std::move(node), std::move(where));

@@ -66,7 +66,8 @@ inline void fuzzCloud(const std::uint8_t* data, std::size_t size, CloudFormat fo
         if (!settings.columns.empty() && format != CloudFormat::text) continue;
         fuzzRefusals([&] {
             std::istringstream stream(bytes);
-            fuzzCheckAccepted(parseCloud(stream, bytes.size(), "fuzz", format, settings), format);
+            fuzzCheckAccepted(fuzzRead([&] { return parseCloud(stream, bytes.size(), "fuzz", format, settings); }),
+                              format);
         });
     }
 }

@@ -32,6 +32,30 @@ struct FuzzVerdicts {
 };
 inline FuzzVerdicts fuzzVerdicts;
 
+/// Called around each reading by whoever measures its memory; see fuzzRead.
+struct FuzzReading {
+    void (*begins)() = nullptr;
+    void (*ends)()   = nullptr;
+};
+inline FuzzReading fuzzReading;
+
+/// Reads, apart from what a harness then does with what was read. A harness that does not say so reads all the time.
+template <class Read>
+auto fuzzRead(const Read& read)
+{
+    struct Reading {
+        Reading()
+        {
+            if (fuzzReading.begins) fuzzReading.begins();
+        }
+        ~Reading()
+        {
+            if (fuzzReading.ends) fuzzReading.ends();
+        }
+    } const reading;
+    return read();
+}
+
 /// Does what may be refused: an Error is a right answer if it is such a sentence, and nothing else may come out.
 template <class Act>
 void fuzzRefusals(const Act& act)

@@ -17,11 +17,12 @@ namespace {
 void check(const std::string& json)
 {
     palp::HaplyState state;
-    if (palp::takeHaplyState(json, "049D", state) == palp::HaplyVerdict::good)
+    if (palp::fuzzRead([&] { return palp::takeHaplyState(json, "049D", state); }) == palp::HaplyVerdict::good)
         palp::fuzzExpect(std::isfinite(glm::length(state.position) + glm::length(state.velocity) +
                                        glm::length(state.rendered.value_or(glm::dvec3(0)))) &&
                          std::abs(glm::length(state.orientation) - 1) < 1e-6);
-    for (const palp::HaplyDescription& device : palp::haplyDevices(json)) palp::fuzzExpect(palp::isHaplyId(device.id));
+    for (const palp::HaplyDescription& device : palp::fuzzRead([&] { return palp::haplyDevices(json); }))
+        palp::fuzzExpect(palp::isHaplyId(device.id));
     palp::fuzzExpect(palp::haplyEvent(json, "049D").words != nullptr);
     static_cast<void>(palp::dialectOf(palp::versionIn(json)));
     static_cast<void>(palp::forceScaleIn(json));

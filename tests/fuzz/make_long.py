@@ -4,8 +4,9 @@
 usage: make_long.py FOLDER RECORDS
 
 A record is a point, a row, a tick, a message, or a comment where a file may hold only a few of anything. Two such folders
-let palp_fuzz_replay --linear compare how long a reader takes for either. Beside it, for each reader of JSON, a file with lists
-in lists, ten times as deep: whoever prints them by recursion has no stack left.
+let palp_fuzz_replay --linear compare how long a reader takes for either. Beside it, for each reader of JSON, two files with
+lists that it refuses: one is ten times as deep, so that whoever prints it by recursion has no stack left, the other is of
+objects that are empty, which take the most memory.
 """
 import base64
 import json
@@ -42,7 +43,8 @@ def pcd(count):
 
 
 def text(count):
-    return "# length_unit m\nx,y,z,E\n" + "".join("%g,%g,%g,%g\n" % p for p in points(count))
+    """The shortest rows that there are: a point takes the most memory for each byte of them."""
+    return "# length_unit mm\n" + "".join("%d %d %d\n" % (n % 100, n // 100 % 100, n // 10000) for n in range(count))
 
 
 def obj(count):
@@ -161,9 +163,8 @@ FORMATS = {
 }
 
 
-def deep(count):
+def of_json(lists):
     """For each reader of JSON, a text whose lists it has to refuse."""
-    lists = "[" * 10 * count + "]" * 10 * count
     return {
         "problem": '{"size": %s}' % lists, "scene": '{"cloud": %s}' % lists, "plan": '{"title": "t", "conditions": %s}' % lists,
         "hunt": '{"random": {"count": %s}}' % lists, "recording": 's{"format": 2, "clock": "virtual", "scene": {"cloud": %s}}' % lists,
@@ -174,7 +175,9 @@ def deep(count):
 
 def main():
     folder, count = pathlib.Path(sys.argv[1]), int(sys.argv[2])
-    files = [(name, "long", write(count)) for name, write in FORMATS.items()] + [(name, "deep", content) for name, content in deep(count).items()]
+    lists = {"deep": "[" * 10 * count + "]" * 10 * count, "wide": "[%s{}]" % ("{}," * 15 * count)}
+    files = [(name, "long", write(count)) for name, write in FORMATS.items()]
+    files += [(name, file, content) for file, text in lists.items() for name, content in of_json(text).items()]
     for name, file, content in files:
         (folder / name).mkdir(parents=True, exist_ok=True)
         (folder / name / file).write_bytes(content if isinstance(content, bytes) else content.encode())

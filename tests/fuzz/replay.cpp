@@ -21,7 +21,7 @@
 // for more than its input can hold.
 //
 // palp_fuzz_replay --linear SHORT LONG: compares the time that each harness takes for an input and for one with kLonger
-// times as many records, of make_long.py; then gives readers of JSON its deep lists.
+// times as many records, of make_long.py; then gives readers of JSON its deep and its wide lists.
 //
 // palp_fuzz_replay --few SEEDS...: the same with few damages, for valgrind.
 
@@ -46,16 +46,18 @@ constexpr Named kHarnesses[] = {
 
 std::atomic<std::size_t> live{0}, peak{0}; // [bytes] that operator new gave
 
-/// [bytes] of memory for each byte of an input. A point of a file in text takes 8 bytes ("1 2 3 4\n") and 56 in memory,
-/// twice while it is sorted and once more as it is written back; a harness holds its input twice.
-constexpr std::size_t kMostPerByte = 24;
-/// [bytes] the same of .glb, whose points have 12 bytes, and no stiffness: read, written and read again they are several
-/// times as many.
-constexpr std::size_t kMostPerByteOfGlb = 40;
+/// [bytes] of memory that reading takes for each byte of an input. A point takes 32 in memory, and 16 more while equal
+/// places are looked for; the shortest row of text that can be told from thousands of others, "12 34 5\n", has 8 bytes.
+constexpr std::size_t kMostPerByte = 10;
+/// [bytes] the same of JSON: "{}," takes 72 in memory, and its list is copied as it grows. Such files have 1 to 16 MiB at
+/// most.
+constexpr std::size_t kMostPerByteOfJson = 64;
 /// [bytes] beside it: buffers of streams, the table of keys, zlib's window.
 constexpr std::size_t kMostBeside = std::size_t(512) << 10;
 /// [bytes] the same of the C interface, whose objects have plates of 8 cells, a solver and a session with its thread.
 constexpr std::size_t kMostOfInterface = std::size_t(2) << 20;
+
+std::size_t atBegin = 0, mostRead = 0; // [bytes] live as the reading began; the most that one of this input took
 
 const char*                      current = "";
 const std::vector<std::uint8_t>* input   = nullptr;
@@ -76,19 +78,18 @@ class Replay {
 public:
     explicit Replay(const Named& harness) : harness_(harness) { current = harness.name; }
 
-    void whole(const std::vector<std::uint8_t>& bytes)
+    void whole(const std::vector<std::uint8_t>& bytes, std::size_t mostPerByte = kMostPerByte)
     {
         ++inputs_;
         input                    = &bytes;
         const std::size_t before = live;
         peak                     = before;
+        mostRead                 = 0;
         harness_.run(bytes.data(), bytes.size());
-        const std::size_t taken   = peak - before;
-        most_                     = std::max(most_, taken);
-        const std::string name    = harness_.name;
-        const std::size_t beside  = name == "capi" ? kMostOfInterface : kMostBeside;
-        const std::size_t perByte = name == "glb" ? kMostPerByteOfGlb : kMostPerByte;
-        if (taken > beside + perByte * bytes.size()) {
+        const std::size_t taken  = mostRead > 0 ? mostRead : peak - before;
+        most_                    = std::max(most_, taken);
+        const std::size_t beside = harness_.name == std::string("capi") ? kMostOfInterface : kMostBeside;
+        if (taken > beside + mostPerByte * bytes.size()) {
             std::fprintf(stderr, "%zu bytes of memory for an input of %zu\n", taken, bytes.size());
             std::abort();
         }
@@ -124,12 +125,12 @@ constexpr double kMostOver = 3;
 constexpr double kRead = 2;
 
 /// Returns the least processor time of several runs over the bytes [s].
-double secondsOf(Replay& replay, const std::vector<std::uint8_t>& bytes, int runs)
+double secondsOf(Replay& replay, const std::vector<std::uint8_t>& bytes, int runs, std::size_t mostPerByte)
 {
     double least = std::numeric_limits<double>::infinity();
     for (int n = 0; n < runs; ++n) {
         const std::clock_t began = std::clock();
-        replay.whole(bytes);
+        replay.whole(bytes, mostPerByte);
         least = std::min(least, double(std::clock() - began) / CLOCKS_PER_SEC);
     }
     return least;
@@ -141,25 +142,39 @@ std::vector<std::uint8_t> contentsOf(const std::filesystem::path& path)
     return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// Returns a file of make_long.py, "long" or "deep"; nothing where there is none.
+/// Returns a file of make_long.py, "long", "deep" or "wide"; nothing where there is none.
 std::vector<std::uint8_t> madeOne(const char* folder, const Named& harness, const char* file = "long")
 {
     return contentsOf(std::filesystem::path(folder) / harness.name / file);
 }
 
-/// Gives each reader of JSON lists in lists: it ends with a sentence, not by a signal.
-bool bearsDepth(const char* folder)
+/// Gives each reader of JSON lists in lists, and a list of what takes the most memory: it ends with a sentence, and soon.
+bool bearsLists(const char* shorts, const char* longs)
 {
     constexpr int kReaders = 8; // of JSON, in make_long.py
-    int           readers  = 0;
-    for (const Named& harness : kHarnesses)
-        if (const auto bytes = madeOne(folder, harness, "deep"); !bytes.empty()) {
+    bool          good     = true;
+    for (const char* const file : {"deep", "wide"}) {
+        int    readers = 0;
+        double memory  = 0,
+               time    = 0; // the most that a reader takes for a byte, and for the long input over the short one
+        for (const Named& harness : kHarnesses) {
+            const auto few = madeOne(shorts, harness, file), many = madeOne(longs, harness, file);
+            if (many.empty()) continue;
+            Replay replay(harness);
             palp::fuzzVerdicts = {};
-            Replay(harness).whole(bytes);
+            const double brief = secondsOf(replay, few, 7, kMostPerByteOfJson);
+            time               = std::max(time, secondsOf(replay, many, 3, kMostPerByteOfJson) / brief);
+            memory             = std::max(memory, double(replay.most()) / double(many.size()));
             readers += palp::fuzzVerdicts.accepted == 0;
         }
-    std::printf("%d of %d readers of JSON refuse lists in lists\n", readers, kReaders);
-    return readers == kReaders;
+        const bool linear = time < kMostOver * kLonger;
+        std::printf(
+            "%d of %d readers of JSON refuse %s lists: at most %.1f times the time of short ones, and %.1f bytes "
+            "for each of theirs%s\n",
+            readers, kReaders, file, time, memory, linear ? "" : ": FAILED: more than in proportion");
+        good = good && readers == kReaders && linear;
+    }
+    return good;
 }
 
 /// Returns whether every harness takes a time in proportion to its input.
@@ -167,11 +182,12 @@ bool isLinear(const char* shorts, const char* longs)
 {
     bool good = true;
     for (const Named& harness : kHarnesses) {
-        Replay       replay(harness);
-        const auto   few = madeOne(shorts, harness), many = madeOne(longs, harness);
-        const double brief = secondsOf(replay, few, 7), lasting = secondsOf(replay, many, 3);
+        Replay            replay(harness);
+        const std::size_t mostPerByte = harness.name == std::string("haply") ? kMostPerByteOfJson : kMostPerByte;
+        const auto        few = madeOne(shorts, harness), many = madeOne(longs, harness);
+        const double brief = secondsOf(replay, few, 7, mostPerByte), lasting = secondsOf(replay, many, 3, mostPerByte);
         palp::fuzzVerdicts = {};
-        replay.whole(few);
+        replay.whole(few, mostPerByte);
         const bool taken = palp::fuzzVerdicts.accepted > 0 || palp::fuzzVerdicts.refused == 0;
         const bool read = taken && lasting > kRead * brief, linear = lasting < kMostOver * kLonger * brief;
         std::printf("%-10s %8zu bytes in %9.3f ms, %8zu in %9.3f ms: %5.1f times, at most %4zu KiB of memory%s\n",
@@ -209,9 +225,10 @@ void operator delete(void* memory, std::size_t) noexcept
 int main(int count, char** arguments)
 {
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, keep);
+    palp::fuzzReading = {[] { peak = atBegin = live; }, [] { mostRead = std::max(mostRead, peak - atBegin); }};
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     if (count == 4 && std::string(arguments[1]) == "--linear")
-        return isLinear(arguments[2], arguments[3]) && bearsDepth(arguments[3]) ? 0 : 1;
+        return isLinear(arguments[2], arguments[3]) && bearsLists(arguments[2], arguments[3]) ? 0 : 1;
     const bool few    = count > 1 && std::string(arguments[1]) == "--few";
     bool       failed = false;
     for (const Named& harness : kHarnesses) {

@@ -9,7 +9,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const palp::TemporaryFolder kFolder;
     const auto path = kFolder.write("trials.csv", std::string_view(reinterpret_cast<const char*>(data), size));
     palp::fuzzRefusals([&] {
-        const auto before = palp::study::readTrials(path);
+        const auto before = palp::fuzzRead([&] { return palp::study::readTrials(path); });
         // A table that can be read can be continued, and nothing of it is lost.
         palp::study::TrialTable table(path);
         palp::fuzzExpect(table.rows().size() == before.size());

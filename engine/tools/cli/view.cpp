@@ -197,23 +197,11 @@ void tellEnd(const ViewOptions& o, const WorkbenchReport& report, SurfaceRendere
     if (!messages.empty()) throw CheckFailed("the validation layer has messages");
 }
 
-void view(const ViewOptions& o)
+/// Shows what the options name until its window is closed.
+void showIn(GlfwWindow& window, const ViewOptions& o, WorkbenchSettings& settings,
+            std::optional<study::HuntScorer>& scorer)
 {
-    if (!o.markers.empty()) static_cast<void>(markerAddress(o.markers)); // before a window opens
-    std::vector<std::unique_ptr<TickStream>> streams;                    // outlive the window
-    SessionHand                              source;
-    WorkbenchSettings                        settings = settingsOf(o, source);
-    auto                                     scorer   = scorerFor(o.scene);
-    if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
-    for (const std::string& outlet : o.streams) streams.push_back(std::make_unique<TickStream>(openOutlet(outlet)));
-    for (const auto& stream : streams) settings.streams.push_back(stream.get());
-
-    HidapiSystem hid;
-    const auto   cap = capFor(o, hid);
-    settings.camera  = cap.get();
-
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
-    GlfwWindow                window("Palpate", sizeOf(o.size));
     compute::ContextSettings  gpu{.processor = o.drawOn};
     if (o.validate) gpu.validation = compute::Validation::synchronization;
     SurfaceRenderer renderer(gpu, window.link());
@@ -234,8 +222,32 @@ void view(const ViewOptions& o)
         panels ? &*panels : nullptr);
     markers.reset();
     if (o.size.empty()) rememberSize(last);
-    tellStreams(streams, o.json);
     tellEnd(o, report, renderer, scorer);
+}
+
+void view(const ViewOptions& o)
+{
+    if (!o.markers.empty()) static_cast<void>(markerAddress(o.markers)); // before a window opens
+    std::vector<std::unique_ptr<TickStream>> streams;                    // outlive the window
+    SessionHand                              source;
+    WorkbenchSettings                        settings = settingsOf(o, source);
+    auto                                     scorer   = scorerFor(o.scene);
+    if (scorer) settings.onTick = [&scorer](const TickRecord& record) { scorer->add(record); };
+    for (const std::string& outlet : o.streams) streams.push_back(std::make_unique<TickStream>(openOutlet(outlet)));
+    for (const auto& stream : streams) settings.streams.push_back(stream.get());
+
+    HidapiSystem hid;
+    const auto   cap = capFor(o, hid);
+    settings.camera  = cap.get();
+
+    GlfwWindow window("Palpate", sizeOf(o.size));
+    try {
+        showIn(window, o, settings, scorer);
+    } catch (const compute::ProcessorLost&) { // a driver may notice first, and say that it has no memory
+        static_cast<void>(window.poll());
+        if (window.hasDisplay()) throw;
+    }
+    tellStreams(streams, o.json);
     if (!window.hasDisplay()) throw Error("the display has gone, and the window with it; what was recorded is whole");
 }
 

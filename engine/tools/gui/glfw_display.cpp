@@ -1,13 +1,18 @@
 #include "engine/tools/gui/glfw_display.h"
 
 #include <atomic>
+#include <csetjmp>
 
 #include <dlfcn.h>
+
+#include <GLFW/glfw3.h>
 
 namespace palp {
 namespace {
 
 std::atomic<bool> hasGone{false};
+std::jmp_buf      wayOut;           // of the calls that are being made
+bool              isWithin = false; // them; no other thread calls GLFW
 
 // Of libX11, whose header is not needed for building and which may not be there.
 using Display        = void;
@@ -22,23 +27,40 @@ Function* find(void* library, const char* name)
     return reinterpret_cast<Function*>(::dlsym(library, name));
 }
 
+/// In the place of Xlib's own sentence.
+int notice(Display*)
+{
+    hasGone = true;
+    if (isWithin) std::longjmp(wayOut, 1);
+    return 0;
+}
+
 } // namespace
 
-void outliveDisplay() noexcept
+bool startDisplay()
 {
+    void* const x11 = ::dlopen("libX11.so.6", RTLD_NOW); // as GLFW does
+    if (const auto onLastWords = x11 ? find<SetOnLastWords>(x11, "XSetIOErrorHandler") : nullptr) onLastWords(notice);
+    bool started = false;
+    if (!withDisplay([&] { started = glfwInit() != 0; }) || !started) return false;
+    // A driver that meets the end by Xlib, outside of our calls, goes on with what means nothing: libX11 1.7 and later.
     const auto displayOf = find<Display*()>(RTLD_DEFAULT, "glfwGetX11Display");
-    void*      x11       = displayOf ? ::dlopen("libX11.so.6", RTLD_NOW | RTLD_NOLOAD) : nullptr;
-    if (!x11) return;
-    Display* const display     = displayOf();
-    const auto     onGone      = find<SetOnGone>(x11, "XSetIOErrorExitHandler");  // instead of exit()
-    const auto     onLastWords = find<SetOnLastWords>(x11, "XSetIOErrorHandler"); // instead of its own sentence
-    if (!display || !onGone || !onLastWords) return;
-    onLastWords([](Display*) {
-        hasGone = true;
-        return 0;
-    });
-    onGone(
-        display, [](Display*, void*) {}, nullptr);
+    const auto onGone    = x11 ? find<SetOnGone>(x11, "XSetIOErrorExitHandler") : nullptr;
+    if (Display* const display = displayOf ? displayOf() : nullptr; display && onGone)
+        onGone(
+            display, [](Display*, void*) {}, nullptr);
+    return true;
+}
+
+bool withDisplay(const std::function<void()>& calls)
+{
+    if (hasGone) return false;
+    if (setjmp(wayOut) == 0) {
+        isWithin = true;
+        calls();
+    }
+    isWithin = false;
+    return !hasGone;
 }
 
 bool displayHasGone() noexcept

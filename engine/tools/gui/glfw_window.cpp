@@ -131,30 +131,34 @@ void GlfwWindow::Impl::readState()
 GlfwWindow::GlfwWindow(const std::string& title, const glm::ivec2& size) : impl_(std::make_unique<Impl>())
 {
     constexpr const char* kHint = "; palpate render makes pictures without a display";
-    if (!glfwInit()) throw Error("no window can be opened: there is no display" + reason() + kHint);
+    if (!startDisplay()) throw Error("no window can be opened: there is no display" + reason() + kHint);
     if (!glfwVulkanSupported()) {
         const std::string why = reason();
         glfwTerminate();
         throw Error("no window can be opened: no Vulkan driver shows pictures on this display" + why + kHint);
     }
-    outliveDisplay();
-    glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    impl_->window = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
+    const bool hasIt = withDisplay([&] {
+        glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
+        impl_->window = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
+        if (!impl_->window) return;
+        impl_->listen();
+        impl_->ask();
+        impl_->input.scale = scale();
+    });
+    if (!hasIt) throw Error(std::string("the display has gone while the window was opened") + kHint);
     if (!impl_->window) {
         const std::string why = reason();
         glfwTerminate();
         throw Error("no window can be opened on this display" + why + kHint);
     }
-    impl_->listen();
-    impl_->ask();
-    impl_->input.scale = scale();
 }
 
 GlfwWindow::~GlfwWindow()
 {
-    if (!hasDisplay()) return; // nothing of it is left
-    glfwDestroyWindow(impl_->window);
-    glfwTerminate();
+    withDisplay([this] {
+        glfwDestroyWindow(impl_->window);
+        glfwTerminate();
+    });
 }
 
 WindowLink GlfwWindow::link()
@@ -173,13 +177,13 @@ WindowLink GlfwWindow::link()
 
 WindowInput GlfwWindow::poll(double patience)
 {
-    if (hasDisplay()) {
+    const bool hasIt = withDisplay([patience] {
         if (patience > 0)
             glfwWaitEventsTimeout(patience);
         else
             glfwPollEvents();
-    }
-    if (hasDisplay()) impl_->readState();
+    });
+    if (hasIt) impl_->readState();
     impl_->input.closing |= !hasDisplay();
     WindowInput result       = impl_->input;
     impl_->input.wheel       = 0;
@@ -192,7 +196,7 @@ WindowInput GlfwWindow::poll(double patience)
 
 void GlfwWindow::setTitle(const std::string& title)
 {
-    if (hasDisplay()) glfwSetWindowTitle(impl_->window, title.c_str());
+    withDisplay([&] { glfwSetWindowTitle(impl_->window, title.c_str()); });
 }
 
 bool GlfwWindow::hasDisplay() const noexcept
