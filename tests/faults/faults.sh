@@ -1,6 +1,6 @@
 #!/bin/sh
-# Faults of the machine, command by command: a disk that is full after some bytes, a folder that cannot be written, and few
-# file handles. Arguments: the program, the build's sanitizers, and the scene of a hunt.
+# Faults of the machine, command by command: a disk that is full after some bytes, a folder that cannot be written, few
+# file handles, and standard streams that are closed. Arguments: the program, the build's sanitizers, and the scene of a hunt.
 #
 # Expected each time: exit 0 with everything there, or exit 2 with a sentence; an older file as it was; no part of a file. Sanitizers need
 # handles of their own, so that part is omitted with them.
@@ -111,6 +111,22 @@ else
     chmod 555 locked
     [ -w locked ] || every : locked
 fi
+
+# Streams that the caller has closed: no sentence is written into a file, which would have a stream's number.
+for closed in '<&-' '>&-' '2>&-' '<&- >&- 2>&-'; do
+    rm -rf closed
+    eval "\"\$palpate\" run $sheet --clock virtual --seconds 0.3 --record closed >out.txt 2>err.txt $closed"
+    [ $? -le 2 ] || complain "run $closed: ended by a signal"
+    "$palpate" export closed --csv closed.csv >out.txt 2>err.txt && [ "$(wc -l <closed.csv)" -eq 301 ] &&
+        pass || complain "run $closed: the recording is damaged: $(cat err.txt)"
+done
+
+# A reader of its warnings that has gone ends no session.
+rm -rf closed
+# shellcheck disable=SC2086
+"$palpate" run $sheet --clock virtual --seconds 0.3 --record closed 2>&1 >/dev/null | true
+"$palpate" export closed --csv closed.csv >out.txt 2>err.txt && [ "$(wc -l <closed.csv)" -eq 301 ] &&
+    pass || complain "run into a closed pipe: the recording is not whole: $(cat err.txt)"
 
 echo "$passed checks passed, $failed failed"
 [ $failed -eq 0 ]

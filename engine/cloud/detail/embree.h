@@ -43,7 +43,9 @@ public:
     /// \throws Error if Embree does not start or runs out of memory
     explicit BoxTree(const std::vector<Box>& boxes) : device_(rtcNewDevice(kConfiguration))
     {
-        if (!device_) throw Error("Embree does not start (error " + std::to_string(rtcGetDeviceError(nullptr)) + ")");
+        if (!device_)
+            throw Error("Embree does not start (error " + std::to_string(rtcGetDeviceError(nullptr)) +
+                        "); is there enough memory?");
         scene_.reset(rtcNewScene(device_.get()));
         const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
         rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(boxes.size()));

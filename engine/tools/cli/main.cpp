@@ -12,6 +12,10 @@
 #include <system_error>
 #include <vector>
 
+#include <fcntl.h>
+#include <poll.h>
+#include <unistd.h>
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -34,11 +38,18 @@ constexpr int kNoGpu       = 4; // 3 is a missing package, see engine/prepare.sh
 
 constexpr const char* kUnprinted = "standard output cannot be written";
 
-/// Flushes both libraries' output and checks that it has been written.
+/// Flushes both libraries' output and checks that it has been written. Where its reader has gone, as head does, that ends
+/// the program without a word, as it ends others; but only here, not in the middle of a session.
 bool printed()
 {
     std::cout.flush();
-    return std::cout && std::fflush(stdout) == 0 && !std::ferror(stdout);
+    const bool good = std::cout && std::fflush(stdout) == 0 && !std::ferror(stdout);
+    pollfd     reader{STDOUT_FILENO, POLLOUT, 0};
+    if (!good && ::poll(&reader, 1, 0) == 1 && (reader.revents & POLLERR) != 0) {
+        std::signal(SIGPIPE, SIG_DFL);
+        std::raise(SIGPIPE);
+    }
+    return good;
 }
 
 int complain(const std::string& sentence, int code)
@@ -116,6 +127,15 @@ bool isForWantOfThreads(const std::exception& error)
 [[noreturn]] void leaveWithoutMemory()
 {
     std::_Exit(complain("out of memory; try fewer cells or points", kBadInput)); // std::cerr has no buffer
+}
+
+/// Takes the numbers of standard streams that the caller has closed: the first files that are opened would get them, and
+/// sentences would be written into a recording. Using such a stream fails, as if it were closed still.
+void keepStandardStreams()
+{
+    for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(stream, F_GETFD) == -1)
+            static_cast<void>(::open("/dev/null", stream == STDIN_FILENO ? O_WRONLY : O_RDONLY));
 }
 
 /// Keeps freed memory at hand: every touch needs some megabytes, which the C library would give back and the system
@@ -205,6 +225,7 @@ int runProgram(int argumentCount, char** arguments)
     CLI::App app("Palpate: feel a thin, soft object whose stiffness varies from place to place.");
     addCommands(app);
     std::signal(SIGXFSZ, SIG_IGN); // a file beyond the size limit then fails as a write, with a sentence
+    std::signal(SIGPIPE, SIG_IGN); // see printed()
     try {
         const std::vector<const char*> words = wordsOf(argumentCount, arguments);
         if (words.size() > 1) refuseUnknownCommand(app, words[1]);
@@ -237,6 +258,7 @@ int runProgram(int argumentCount, char** arguments)
 
 int main(int argumentCount, char** arguments)
 {
+    keepStandardStreams();
     keepFreedMemory();
     const int code = runProgram(argumentCount, arguments);
     if (palp::compute::driverLeftAtWork()) std::_Exit(code); // all output has been flushed
