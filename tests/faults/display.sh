@@ -3,8 +3,10 @@
 # touches and is recorded. Arguments: palpate, and a folder that may be emptied.
 #
 # Expected each time: an exit of the program's own, one sentence, and a recording, where one was begun, that is whole.
-# PALPATE_INSTANTS says how many instants (3).
+# PALPATE_INSTANTS says how many instants (3), PALPATE_LATEST by when [s].
 set -u
+latest=${PALPATE_LATEST:-5} # [s] after the start: by then the hand has touched for two seconds
+unset PALPATE_LATEST
 palpate=$1 work=$2 instants=${PALPATE_INSTANTS:-3}
 unset PALPATE_INSTANTS # it is no key of a scene
 for tool in Xvfb xdotool; do
@@ -15,13 +17,12 @@ rm -rf "$work" && mkdir -p "$work" && cd "$work" || exit 1
 XDG_CONFIG_HOME=$work/config
 export XDG_CONFIG_HOME
 failed=0 server= program=
-fail() { echo "FAILED: killed after $after s: $*"; failed=$((failed + 1)); }
+fail() { echo "FAILED: killed at $after [s]: $*"; failed=$((failed + 1)); }
 finish() {
     for process in $program $server; do kill -9 "$process" 2>/dev/null; done
     [ -z "$server" ] || rm -f "/tmp/.X$display-lock" "/tmp/.X11-unix/X$display" # which a killed server leaves
 }
 trap finish EXIT
-latest=5 # [s] after the start: by then the hand has touched for two seconds
 
 attempt() {
     rm -rf session-* number
@@ -34,7 +35,7 @@ attempt() {
     # The hand, which fails where the display has gone.
     (
         window= n=0
-        while [ -z "$window" ] && [ $n -lt 40 ]; do
+        while [ -z "$window" ] && [ $n -lt 1200 ]; do
             sleep 0.1
             n=$((n + 1))
             window=$(DISPLAY=:$display timeout 2 xdotool search --onlyvisible --name Palpate 2>/dev/null | head -n 1)
@@ -43,7 +44,13 @@ attempt() {
             mousemove --window "$window" 200 130 keydown space sleep 3
     ) >/dev/null 2>&1 &
     hand=$!
-    sleep "$after"
+    if [ "$after" = recorded ]; then # at whatever time a hand is recorded: the one instant that is not random
+        n=0
+        while [ ! -s session-0001/ticks.npy ] && [ $n -lt 1200 ]; do n=$((n + 1)); sleep 0.1; done
+        sleep 1
+    else
+        sleep "$after"
+    fi
     kill -9 "$server"
     n=0
     while kill -0 "$program" 2>/dev/null && [ $n -lt 600 ]; do n=$((n + 1)); sleep 0.1; done
@@ -64,6 +71,7 @@ attempt() {
 }
 
 recorded=0
-for after in $(awk -v n="$instants" -v latest=$latest 'BEGIN { srand(); for (k = 0; k < n; ++k) print (k + rand()) / n * latest }'); do attempt; done
-echo "$instants times the display went, $recorded times while a session was recorded; $failed times something was wrong"
+for after in $(awk -v n="$instants" -v latest=$latest 'BEGIN { srand(); for (k = 0; k < n; ++k) print (k + rand()) / n * latest }') recorded; do attempt; done
+[ $recorded -gt 0 ] || fail 'no session was recorded at any of these instants'
+echo "$((instants + 1)) times the display went, $recorded times while a session was recorded; $failed times something was wrong"
 [ $failed -eq 0 ]

@@ -198,8 +198,9 @@ void tellEnd(const ViewOptions& o, const WorkbenchReport& report, SurfaceRendere
 }
 
 /// Shows what the options name until its window is closed.
+/// \param streams  of the session, whose counts are told
 void showIn(GlfwWindow& window, const ViewOptions& o, WorkbenchSettings& settings,
-            std::optional<study::HuntScorer>& scorer)
+            std::optional<study::HuntScorer>& scorer, const std::vector<std::unique_ptr<TickStream>>& streams)
 {
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
     compute::ContextSettings  gpu{.processor = o.drawOn};
@@ -222,6 +223,7 @@ void showIn(GlfwWindow& window, const ViewOptions& o, WorkbenchSettings& setting
         panels ? &*panels : nullptr);
     markers.reset();
     if (o.size.empty()) rememberSize(last);
+    tellStreams(streams, o.json);
     tellEnd(o, report, renderer, scorer);
 }
 
@@ -242,12 +244,12 @@ void view(const ViewOptions& o)
 
     GlfwWindow window("Palpate", sizeOf(o.size));
     try {
-        showIn(window, o, settings, scorer);
-    } catch (const compute::ProcessorLost&) { // a driver may notice first, and say that it has no memory
+        showIn(window, o, settings, scorer, streams);
+    } catch (const Error& error) { // a driver may notice first, and say that it has no memory
         static_cast<void>(window.poll());
         if (window.hasDisplay()) throw;
+        throw Error(std::string("the display has gone, and the window with it (") + error.what() + ")");
     }
-    tellStreams(streams, o.json);
     if (!window.hasDisplay()) throw Error("the display has gone, and the window with it; what was recorded is whole");
 }
 

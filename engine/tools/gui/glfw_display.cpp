@@ -11,8 +11,10 @@ namespace palp {
 namespace {
 
 std::atomic<bool> hasGone{false};
-std::jmp_buf      wayOut;           // of the calls that are being made
-bool              isWithin = false; // them; no other thread calls GLFW
+
+// Of the calls that this thread is making; a driver's threads may meet the end as well.
+thread_local std::jmp_buf wayOut;
+thread_local bool         isWithin = false;
 
 // Of libX11, whose header is not needed for building and which may not be there.
 using Display        = void;
@@ -20,6 +22,9 @@ using OnGone         = void(Display*, void*);
 using SetOnGone      = void(Display*, OnGone*, void*);
 using OnLastWords    = int(Display*);
 using SetOnLastWords = OnLastWords*(OnLastWords*);
+using Unlock         = void(Display*);
+
+Unlock* unlock = nullptr; // XUnlockDisplay
 
 template <class Function>
 Function* find(void* library, const char* name)
@@ -28,11 +33,12 @@ Function* find(void* library, const char* name)
 }
 
 /// In the place of Xlib's own sentence.
-int notice(Display*)
+int notice(Display* display)
 {
     hasGone = true;
-    if (isWithin) std::longjmp(wayOut, 1);
-    return 0;
+    if (!isWithin) return 0;
+    if (unlock) unlock(display); // Xlib has locked it for an exit, and others would wait for ever
+    std::longjmp(wayOut, 1);
 }
 
 } // namespace
@@ -40,6 +46,7 @@ int notice(Display*)
 bool startDisplay()
 {
     void* const x11 = ::dlopen("libX11.so.6", RTLD_NOW); // as GLFW does
+    if (x11) unlock = find<Unlock>(x11, "XUnlockDisplay");
     if (const auto onLastWords = x11 ? find<SetOnLastWords>(x11, "XSetIOErrorHandler") : nullptr) onLastWords(notice);
     bool started = false;
     if (!withDisplay([&] { started = glfwInit() != 0; }) || !started) return false;
@@ -57,7 +64,12 @@ bool withDisplay(const std::function<void()>& calls)
     if (hasGone) return false;
     if (setjmp(wayOut) == 0) {
         isWithin = true;
-        calls();
+        try {
+            calls();
+        } catch (...) {
+            isWithin = false;
+            throw;
+        }
     }
     isWithin = false;
     return !hasGone;
