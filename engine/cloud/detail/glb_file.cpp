@@ -230,6 +230,8 @@ private:
     {
         const std::string what = "mesh " + std::to_string(n);
         for (const Json& primitive : list(element("meshes", n), "primitives", what)) {
+            constexpr std::uint64_t kLook = 64; // [bytes] that a look at a part counts as: nodes may repeat a mesh
+            reader_.checkUnpacked(bytes_ += kLook);
             if (index(primitive, "mode", what, kTriangles) != kTriangles) {
                 ++otherPrimitives_;
                 continue;
@@ -250,7 +252,7 @@ private:
             fail(what + ": expected positions as floats (5126), found " + std::to_string(corners.type));
         if (indices.begin && indices.type == kFloat) fail(what + ": expected indices as whole numbers, found floats");
         bytes_ += 3 * sizeof(float) * corners.count + sizeof(std::uint32_t) * indices.count;
-        reader_.checkUnpacked(bytes_); // nodes may repeat a mesh
+        reader_.checkUnpacked(bytes_);
         const std::uint64_t count = indices.begin ? indices.count : corners.count;
         if (count % 3 != 0) fail(what + ": expected three indices to a triangle, found " + std::to_string(count));
         for (std::uint64_t n = 0; n < corners.count; ++n) {

@@ -187,14 +187,21 @@ private:
                  compressor_);
         if (element.attribute("format") == "binary") {
             PackedBytes packed(file_, element.text, PackedBytes::Spelling::base64);
-            return arrayBytes(file_, packed, form_);
+            return counted(arrayBytes(file_, packed, form_));
         }
         const std::uint64_t offset = countOf(element, "offset");
         if (!appended_) fail(element, "expected an element AppendedData for the offset", "none");
         if (offset > appended_->size())
             fail(element, "expected an offset of up to " + std::to_string(appended_->size()), std::to_string(offset));
         PackedBytes packed(file_, appended_->substr(offset), spelling_);
-        return arrayBytes(file_, packed, form_);
+        return counted(arrayBytes(file_, packed, form_));
+    }
+
+    /// Refuses pieces that share an array until all of them hold far more than the file.
+    std::vector<std::byte> counted(std::vector<std::byte> bytes) const
+    {
+        file_.reader.checkUnpacked(opened_ += bytes.size());
+        return bytes;
     }
 
     const WholeFile&                file_;
@@ -204,6 +211,7 @@ private:
     std::string                     compressor_;
     std::optional<std::string_view> appended_; ///< from after the underscore to the end of the file
     PackedBytes::Spelling           spelling_ = PackedBytes::Spelling::raw;
+    mutable std::uint64_t           opened_   = 0; ///< [bytes] of arrays, so far
 };
 
 } // namespace
