@@ -81,6 +81,15 @@ private:
 constexpr std::string_view kBetween = ",; \t\r"; // separators of numbers
 
 /// The first four words of a line, empty where there are fewer, and their number.
+/// Takes the next word of a line; empty behind the last.
+std::string_view takeWord(std::string_view& line)
+{
+    line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
+    const std::string_view word = line.substr(0, line.find_first_of(kBetween));
+    line.remove_prefix(word.size());
+    return word;
+}
+
 struct Words {
     std::array<std::string_view, 4> first{};
     std::size_t                     count = 0;
@@ -89,14 +98,11 @@ struct Words {
 Words wordsOf(std::string_view line)
 {
     Words words;
-    for (;;) {
-        line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
-        if (line.empty()) return words;
-        const std::string_view word = line.substr(0, line.find_first_of(kBetween));
+    for (std::string_view word = takeWord(line); !word.empty(); word = takeWord(line)) {
         if (words.count < words.first.size()) words.first[words.count] = word;
         ++words.count;
-        line.remove_prefix(word.size());
     }
+    return words;
 }
 
 /// Demands as many columns as the header has, four without one: a comma too many may be a decimal one.
@@ -110,19 +116,17 @@ void demandColumns(const Words& words, std::size_t columns, const std::string& w
 /// Returns the word of a line in a column that is counted from 0; empty if there are fewer.
 std::string_view wordAt(std::string_view line, std::size_t column)
 {
-    for (;; --column) {
-        line.remove_prefix(std::min(line.find_first_not_of(kBetween), line.size()));
-        const std::string_view word = line.substr(0, line.find_first_of(kBetween));
-        if (column == 0 || word.empty()) return word;
-        line.remove_prefix(word.size());
-    }
+    std::string_view word = takeWord(line);
+    for (; column > 0 && !word.empty(); --column) word = takeWord(line);
+    return word;
 }
 
 /// Returns the column in which a header has a name; 0 (where time is) if it has none.
-std::size_t columnIn(std::string_view header, std::size_t columns, std::string_view name)
+std::size_t columnIn(std::string_view header, std::string_view name)
 {
-    for (std::size_t k = 4; k < columns; ++k)
-        if (wordAt(header, k) == name) return k;
+    std::size_t k = 0;
+    for (std::string_view word = takeWord(header); !word.empty(); word = takeWord(header), ++k)
+        if (k >= 4 && word == name) return k;
     return 0;
 }
 
@@ -134,12 +138,11 @@ struct FurtherColumns {
     [[nodiscard]] bool turns() const { return turn[0] > 0; }
 };
 
-FurtherColumns furtherIn(std::string_view header, std::size_t columns, const std::string& where)
+FurtherColumns furtherIn(std::string_view header, const std::string& where)
 {
     FurtherColumns found;
-    found.buttons = columnIn(header, columns, "buttons");
-    for (std::size_t k = 0; k < 4; ++k)
-        found.turn[k] = columnIn(header, columns, std::string("orientation_") + "xyzw"[k]);
+    found.buttons = columnIn(header, "buttons");
+    for (std::size_t k = 0; k < 4; ++k) found.turn[k] = columnIn(header, std::string("orientation_") + "xyzw"[k]);
     const auto there = 4 - std::ranges::count(found.turn, 0U);
     if (there != 0 && there != 4)
         throw Error(where + ": expected orientation_x, _y, _z and _w or none of them, found " + std::to_string(there));
@@ -338,7 +341,7 @@ HandPath parseHand(std::istream& in, const std::string& name)
         if (words.count == 0 || words.first[0].starts_with('#')) continue;
         if (checked.waypoints.empty() && isHeader(words.first, where)) {
             columns = std::max(words.count, columns);
-            further = furtherIn(rest, columns, where);
+            further = furtherIn(rest, where);
             continue;
         }
         demandColumns(words, columns, where);

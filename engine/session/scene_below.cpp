@@ -142,10 +142,11 @@ std::string belowWithFileIn(const std::string& text, const std::filesystem::path
 {
     if (tooDeepAt(text)) return text; // whoever reads it refuses it
     try {
-        Json below = Json::parse(text, nullptr, true, true);
+        nlohmann::json below =
+            nlohmann::json::parse(text, nullptr, true, true); // in order each key is looked for in all
         for (const char* key : {"volume", "foundation"}) {
             if (!below.contains(key)) continue;
-            Json&             value = below[key];
+            nlohmann::json&   value = below[key];
             const std::string law   = value.is_string() ? value.get<std::string>() : value.dump();
             value                   = lawWithFileIn(law, folder);
         }

@@ -232,6 +232,19 @@ TEST(GlbFile, ARefusalNamesThePlaceAndWhatWasExpected)
     EXPECT_TRUE(contains(refusalOf(nan, CloudFormat::glb), {"test: point 0", "nan"}));
 }
 
+TEST(GlbFile, PartsThatAreLeftOutAreLookedAtInBoundedTime)
+{
+    std::string nodes, roots, parts;
+    for (int n = 0; n < 20'000; ++n) {
+        nodes += std::string(n ? "," : "") + R"({"mesh":0})";
+        roots += (n ? "," : "") + std::to_string(n);
+        parts += std::string(n ? "," : "") + R"({"mode":0})";
+    }
+    const std::string json = R"({"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes +
+                             R"(],"meshes":[{"primitives":[)" + parts + "]}]}";
+    EXPECT_TRUE(contains(refusalOf(glb(json, squareBytes()), CloudFormat::glb), {"100 times the file"}));
+}
+
 TEST(GlbFile, AMeshThatNodesRepeatDoesNotTakeAllMemory)
 {
     std::string nodes, roots;

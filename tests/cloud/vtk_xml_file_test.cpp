@@ -168,6 +168,23 @@ TEST(VtkXmlFile, FilesThatWereCutShortAreRefused)
             EXPECT_NE(vtkRefusal(bytes.substr(0, size)), "") << "cut to " << size;
 }
 
+TEST(VtkXmlFile, PiecesThatShareAnArrayDoNotTakeAllMemory)
+{
+    constexpr std::uint32_t kShared = 20'000;
+    std::string             pieces, data = "_";
+    for (int n = 0; n < 1000; ++n)
+        pieces += "<Piece NumberOfPoints=\"" + std::to_string(kShared) +
+                  "\"><Points><DataArray type=\"Int8\" NumberOfComponents=\"3\" format=\"appended\" "
+                  "offset=\"0\"/></Points></Piece>";
+    append(data, 3 * kShared);
+    data.append(3 * kShared, '\1');
+    const std::string whole = "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\" byte_order=\"LittleEndian\" "
+                              "header_type=\"UInt32\"><PolyData>" +
+                              pieces + "</PolyData><AppendedData encoding=\"raw\">" + data +
+                              "</AppendedData></VTKFile>";
+    EXPECT_TRUE(contains(vtkRefusal(whole), {"100 times the file"}));
+}
+
 TEST(VtkXmlFile, RawBytesWithoutCompressionAreReadAndTheirSizeIsNotBelieved)
 {
     const auto file = [](std::uint32_t bytes) {

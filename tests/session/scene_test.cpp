@@ -341,6 +341,10 @@ TEST(Scene, FilesThatAreNoScenesAreRefused)
     EXPECT_TRUE(says(text(R"({"cloud": "sample:nose"})"), {"key \"cloud\"", "nose", "ear-lobe"}));
     EXPECT_TRUE(says(text(R"({"cloud": ""})"), {"key \"cloud\"", "path"}));
     EXPECT_TRUE(says(text(R"({"cloud": 5})"), {"key \"cloud\"", "5"}));
+    EXPECT_TRUE(says(text(R"({"cloud": "sample:skin", /* a comment */ "cells": 32, "cells": 64})"),
+                     {"s.json", "the key \"cells\" is given twice in one object"}));
+    EXPECT_TRUE(says(text(R"({"cloud": "sample:skin", "below": {"depth": "1 mm", "depth": "2 mm"}})"),
+                     {"the key \"depth\" is given twice in one object"}));
     EXPECT_FALSE(text("{\"a\":" + std::string(100'000, '[')).empty()) << "deep nesting does not overflow the stack";
 }
 

@@ -122,7 +122,7 @@ void ByteReader::checkUnpacked(std::uint64_t bytes) const
 {
     constexpr std::uint64_t kTimes = 100, kAlways = 4u << 20; // [bytes]
     if (bytes > kAlways && bytes / kTimes > size_)
-        failAtByte("the packed data claims to hold " + std::to_string(bytes) + " bytes, more than " +
+        failAtByte("what is packed or repeated claims to hold " + std::to_string(bytes) + " bytes, more than " +
                    std::to_string(kTimes) + " times the file's " + std::to_string(size_) +
                    "; expected a smaller size: is the file damaged? Its program can save it without compression");
 }

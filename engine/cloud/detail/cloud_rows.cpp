@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/cloud/detail/places.h"
+#include "engine/cloud/detail/room.h"
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
 #include "engine/core/counted.h"
@@ -244,11 +245,11 @@ void CloudRows::makeRoom(std::uint64_t points)
 {
     if (points > kMostPoints)
         reader_.fail("expected at most " + std::to_string(kMostPoints) + " points, found " + std::to_string(points));
-    positions_.reserve(points);
-    if (columns_[kSlotStiffness]) stiffness_.reserve(points);
+    makeRoomFor(positions_, points);
+    if (columns_[kSlotStiffness]) makeRoomFor(stiffness_, points);
     for (std::size_t k = 0; k < others_.size(); ++k)
-        if (columns_[kOtherProperties[k].slot]) others_[k].reserve(points);
-    if (columns_[kSlotNormalX]) normals_.reserve(points);
+        if (columns_[kOtherProperties[k].slot]) makeRoomFor(others_[k], points);
+    if (columns_[kSlotNormalX]) makeRoomFor(normals_, points);
 }
 
 /// Returns true if a point has no such property, or a good one.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/cloud/detail/polygon.h"
+#include "engine/cloud/detail/room.h"
 #include "engine/cloud/tokens.h"
 
 namespace palp {
@@ -14,7 +15,7 @@ FaceRows::FaceRows(const ByteReader& reader, std::uint64_t points) : reader_(rea
 
 void FaceRows::expect(std::uint64_t faces, std::uint64_t leastBytes)
 {
-    triangles_.reserve(triangles_.size() + std::size_t(std::min(faces, reader_.remaining() / leastBytes + 1)));
+    makeRoomFor(triangles_, triangles_.size() + std::size_t(std::min(faces, reader_.remaining() / leastBytes + 1)));
 }
 
 void FaceRows::addCorner(double corner, CloudRows::Place place)

@@ -210,14 +210,16 @@ private:
                 if (!node.is_number_unsigned() || node.get<std::uint64_t>() >= visited_.size())
                     fail("a list of nodes: expected numbers below " + std::to_string(visited_.size()) + ", found " +
                                                                 shownText(node.dump(), kMostOfWord));
-                left.emplace_back(node.get<std::uint64_t>(), above);
+                const auto n = node.get<std::uint64_t>();
+                if (std::exchange(visited_[std::size_t(n)], char(1)) != 0)
+                    fail("node " + std::to_string(n) + ": expected one parent, found two");
+                left.emplace_back(n, above);
             }
         };
         for (add(roots, place); !left.empty();) {
             const auto [n, above]  = left.back();
             const std::string what = "node " + std::to_string(n);
             left.pop_back();
-            if (std::exchange(visited_[std::size_t(n)], char(1)) != 0) fail(what + ": expected one parent, found two");
             const Json&      node = element("nodes", n);
             const glm::dmat4 here = above * transformOf(node, what);
             if (has(node, "skin")) fail(what + ": expected no skin, which bends its mesh; save the mesh as it is bent");

@@ -134,7 +134,7 @@ GlfwWindow::GlfwWindow(const std::string& title, const glm::ivec2& size) : impl_
     if (!startDisplay()) throw Error("no window can be opened: there is no display" + reason() + kHint);
     if (!glfwVulkanSupported()) {
         const std::string why = reason();
-        glfwTerminate();
+        withDisplay([] { glfwTerminate(); });
         throw Error("no window can be opened: no Vulkan driver shows pictures on this display" + why + kHint);
     }
     const bool hasIt = withDisplay([&] {
@@ -148,7 +148,7 @@ GlfwWindow::GlfwWindow(const std::string& title, const glm::ivec2& size) : impl_
     if (!hasIt) throw Error(std::string("the display has gone while the window was opened") + kHint);
     if (!impl_->window) {
         const std::string why = reason();
-        glfwTerminate();
+        withDisplay([] { glfwTerminate(); });
         throw Error("no window can be opened on this display" + why + kHint);
     }
 }
