@@ -94,7 +94,7 @@ again='shader-validation|shader-gpu-assisted|pages' # labels that sanitized buil
 without_tsan='^(contact|chart|fit|perception|plot)\.|^host-|^plate\.(LargeLaw|MultigridShell|PressDeep|ReferenceShell|ShearWork|CellsThatAreNotSquare|RigidityThatJumps|Smooth/|All/ConstantRigidity)'
 without_tsan="$without_tsan"'|^pipeline\.(Calculix|ComplianceTracker|TouchedSurface|TableSolve|WholeObject|ShellPatch\.FeelsHardly)|^device\.FalconCalibration'
 without_tsan="$without_tsan"'|^session\.(Reversals|ClosedStrokes|FalconLag|Taps|Weight|Strokes|Tissue)\.|^session\.On/TenMinutes'
-without_tsan="$without_tsan"'|^session\.(SceneMesh\.BadMeshes|VirtualSession\.AHomogeneous|On/ScaledSessions\.APressedWall)|^cloud\.(SurfaceSurvey\.FindsTheNoiseOf|MeshPoints\.EveryPlace)|^(fuzz|prepare|display_faults)$'
+without_tsan="$without_tsan"'|^session\.(SceneMesh\.BadMeshes|VirtualSession\.AHomogeneous|On/ScaledSessions\.APressedWall)|^cloud\.(SurfaceSurvey\.FindsTheNoiseOf|MeshPoints\.EveryPlace)|^(fuzz|prepare)$'
 # The emulated Haply's threads and the generated hands' are those of another test of the same suite.
 without_tsan="$without_tsan"'|^session\.(Below\.ANodule|LargeDeflection\.AClosedStroke|GeneratedHand\.IsRepeated|On/LineSessions\.AnArm.*haply)|^pipeline\.(DenseCloud|LargeTouch)\.'
 

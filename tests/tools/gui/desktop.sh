@@ -23,7 +23,7 @@ export DISPLAY
 window= program=
 finish() {
     [ -n "$program" ] && kill -9 "$program" 2>/dev/null
-    kill "$server" 2>/dev/null || rm -f "/tmp/.X$display-lock" "/tmp/.X11-unix/X$display" # which a killed server leaves
+    kill "$server" 2>/dev/null
 }
 trap finish EXIT
 
@@ -183,30 +183,10 @@ solver=host
 awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "compliance") column = n } NR > 1 && column && $column > 0 { felt = 1 } END { exit !felt }' vulkan.csv ||
     { fail 'no plate by Vulkan was felt'; head -2 vulkan.csv; }
 
-# The display goes while the hand touches: the recording is whole, and a sentence says so. Mesa's driver in software takes
-# seconds to notice.
-start sample:skin --points 1500
-sleep 1
-number=$((number + 1))
-xdotool windowfocus --sync "$window" key --window "$window" F5
-until_ 'the last recording' $long test -s session-000$number/ticks.npy
-xdotool mousemove --window "$window" 420 260 keydown space sleep 1
-kill -9 "$server"
-n=0
-while kill -0 "$program" 2>/dev/null && [ $n -lt 600 ]; do n=$((n + 1)); sleep 0.1; done
-kill -0 "$program" 2>/dev/null && { fail 'the program outlives its display by a minute'; kill -9 "$program"; }
-wait "$program"
-status=$?
-program=
-[ $status -eq 2 ] || fail "the display has gone: exit status $status"
-[ "$(wc -l <err)" -eq 1 ] && says 'palpate: the display has gone' || { fail 'the display has gone, and not one sentence:'; cat err; }
-grep -q '"finished": true' session-000$number/session.json || fail 'the display has gone, and the recording has no end'
-"$palpate" export session-000$number --csv last.csv >/dev/null || fail 'the display has gone, and the recording cannot be read'
-
 # Without a display there is a sentence, and another way.
 env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" view sample:skin >out 2>err
 [ $? -eq 2 ] || fail 'no display must be exit code 2'
 grep -q 'palpate render' err || { fail 'no display: no advice'; cat err; }
 
-[ $failed -eq 0 ] && echo 'the window opens, turns, touches, records, paints, saves, resizes and closes, and outlives its display'
+[ $failed -eq 0 ] && echo 'the window opens, turns, touches, records, paints, saves, resizes and closes'
 exit $failed
