@@ -22,6 +22,9 @@ namespace {
 /// Share of a shape's size within which a point counts as on its rim [1]; it exceeds the rounding of i * spacing.
 constexpr double kRim = 1e-9;
 
+/// Most centres of a law, each of which is asked for at each point; more would be a grid.
+constexpr std::size_t kMostCentres = 1000;
+
 /// Returns the position along the line from `start` to `end`, within [0, 1].
 double shareAlong(const SpatialLaw& law, const glm::dvec3& p)
 {
@@ -124,7 +127,8 @@ void readCentres(SpatialLaw& law, const JsonObject& object, const Region& region
     if (object.has("centres")) {
         if (object.has("centre")) throw Error(object.where() + ": give \"centre\" or \"centres\", not both");
         for (const auto& row : object.rows("centres", region.coordinates())) law.centres.push_back(region.point(row));
-        if (law.centres.empty()) object.refuse("centres", "at least one point");
+        if (law.centres.empty() || law.centres.size() > kMostCentres)
+            object.refuse("centres", "a list of 1 to " + std::to_string(kMostCentres) + " points");
     } else {
         law.centres = {region.point(object, "centre")};
     }

@@ -24,15 +24,18 @@ constexpr std::size_t kMostOfDescription = std::size_t(4) << 20; // [bytes] of s
 /// Reads markers.jsonl, one object a line. What follows the last line's end was cut by a kill.
 std::vector<Marker> readMarkers(const std::filesystem::path& path)
 {
-    constexpr std::size_t kMost = std::size_t(64) << 20; // [bytes]
+    constexpr std::size_t kMost = std::size_t(64) << 20, kLongest = std::size_t(16) << 10; // [bytes] of all, of a line
     std::error_code       none;
     if (!std::filesystem::exists(path, none)) return {}; // format 1 had none
     const std::string   whole = readWhole(path, kMost, "the markers of a session");
     std::vector<Marker> markers;
     std::string_view    rest = whole;
     for (std::size_t end; (end = rest.find('\n')) != std::string_view::npos; rest.remove_prefix(end + 1)) {
-        const JsonObject line =
-            JsonObject::parse(rest.substr(0, end), path.string() + ": line " + std::to_string(markers.size() + 1));
+        const std::string where = path.string() + ": line " + std::to_string(markers.size() + 1);
+        if (end > kLongest)
+            throw Error(where + ": expected a marker of at most " + std::to_string(kLongest) + " bytes, found " +
+                        std::to_string(end));
+        const JsonObject line = JsonObject::parse(rest.substr(0, end), where);
         if (markers.size() == Recording::kMostMarkers)
             throw Error(path.string() + ": expected at most " + std::to_string(Recording::kMostMarkers) + " markers");
         markers.push_back({line.number("time"), markerText(line.text("text"))});
@@ -60,7 +63,7 @@ std::optional<SessionClocks> clocksOf(const JsonObject& file)
 /// Returns the scene of a recording of format 1, whose keys had other names, with the names of today.
 std::string withNamesOfToday(const std::string& scene)
 {
-    using Json       = nlohmann::ordered_json;
+    using Json       = nlohmann::json; // one that keeps the order looks through all keys for each
     const Json then  = Json::parse(scene);
     Json       today = Json::object();
     for (const auto& [name, value] : then.items()) today[std::string(keyNamedOnce(name).value_or(name))] = value;

@@ -15,7 +15,8 @@ namespace {
 using Json   = nlohmann::ordered_json;
 using Limits = JsonObject::QuantityLimits;
 
-constexpr std::size_t kMostRegions = 64, kMostPlaces = 10'000; ///< more would be a property of the points
+/// In all regions together, for each place is asked for at each point; more would be a property of the points.
+constexpr std::size_t kMostRegions = 64, kMostPlaces = 10'000;
 constexpr Limits      kRadius{Dimension::length, 1e-6, 100, "a length from 1e-6 to 100 m, such as 5 mm"};
 
 std::vector<glm::dvec3> placesOf(const JsonObject& object, std::string_view key)
@@ -87,9 +88,16 @@ SceneHeld parseHeld(const std::string& text, const std::string& what)
         held.regions.push_back(regionOf(JsonObject::parse(text, what)));
         return held;
     }
-    const JsonObject list = JsonObject::parse("{\"held\":" + text + "}", what);
-    for (const JsonObject& one : list.objects("held", kMostRegions, "region", "a list of 1 to 64 regions"))
+    constexpr std::string_view kKey = ": key \"held\""; // which the list has here too
+    const JsonObject           list = JsonObject::parse("{\"held\":" + text + "}",
+                                              what.ends_with(kKey) ? what.substr(0, what.size() - kKey.size()) : what);
+    for (const JsonObject& one : list.objects("held", kMostRegions, "held region", "a list of 1 to 64 regions"))
         held.regions.push_back(regionOf(one));
+    std::size_t places = 0;
+    for (const SceneHeld::Region& region : held.regions) places += region.places.size();
+    if (places > kMostPlaces)
+        throw Error(what + ": expected at most " + std::to_string(kMostPlaces) + " places in all regions, found " +
+                    std::to_string(places));
     return held;
 }
 

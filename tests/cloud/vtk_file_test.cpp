@@ -200,6 +200,7 @@ TEST(VtkFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
         contains(vtkRefusal(kHead + "DATASET POLYDATA\nPOINTS 1 bit\n0 1 1\n"), {"line 5", "POINTS", "\"bit\""}));
     EXPECT_TRUE(contains(vtkRefusal(square("SPHERES 4\n")), {"line 8", "another keyword", "SPHERES"}));
     EXPECT_TRUE(contains(vtkRefusal(square("POINTS 1 float\n0 0 0\n")), {"line 8", "POINTS once"}));
+    EXPECT_TRUE(contains(vtkRefusal(square("POLYGONS 0 0\nPOLYGONS 1 4\n3 0 1 2\n")), {"line 9", "POLYGONS once"}));
 }
 
 TEST(VtkFile, PromisesThatTheFileCannotKeepAreRefusedBeforeMemoryIsTaken)

@@ -144,7 +144,12 @@ TEST(SpatialLaw, RefusalsNameWhatWasFoundAndWhatIsKnown)
     EXPECT_TRUE(holds(refusal("gaussian:from=1,to=2,centre=0;0;0,sigma=0"), {"sigma", "positive"}));
     EXPECT_TRUE(holds(refusal("gaussian:from=1,to=2,centre=0;0;0,radius=1"), {"radius", "sigma"}));
     EXPECT_TRUE(holds(refusal("disc:from=1,to=2,centre=0;0;0,centres=0;0;0,radius=1"), {"not both"}));
-    EXPECT_TRUE(holds(refusal(R"({"law":"disc","from":1,"to":2,"centres":[],"radius":1})"), {"at least one"}));
+    EXPECT_TRUE(holds(refusal(R"({"law":"disc","from":1,"to":2,"centres":[],"radius":1})"), {"1 to 1000 points"}));
+    std::string many = "disc:from=1,to=2,radius=1,centres=0;0;0";
+    for (int n = 1; n <= 1000; ++n) many += "/0;0;0";
+    EXPECT_TRUE(holds(refusal(many), {"1 to 1000 points"}));
+    many.resize(many.rfind('/'));
+    EXPECT_EQ(volumeLaw(many).centres.size(), 1000u);
     EXPECT_TRUE(holds(refusal("box:from=1,to=2,low=0;0;0,high=1;-1;1"), {"high", "low"}));
     EXPECT_TRUE(holds(refusal("constant:from=1"), {"from", "value"}));
     EXPECT_TRUE(holds(refusal("linear"), {"missing"}));

@@ -40,6 +40,7 @@ private:
 /// Returns whether it was done; what was refused has a sentence, and nothing is a mistake of the library's own.
 bool isDone(int code)
 {
+    ++(code == PALPATE_OK ? palp::fuzzVerdicts.accepted : palp::fuzzVerdicts.refused);
     if (code == PALPATE_OK) return true;
     palp::fuzzExpect(code != PALPATE_BROKEN && *palpate_error_text() != '\0');
     palp::fuzzExpectSentence(palpate_error_text());

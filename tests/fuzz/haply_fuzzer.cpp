@@ -17,7 +17,10 @@ namespace {
 void check(const std::string& json)
 {
     palp::HaplyState state;
-    if (palp::fuzzRead([&] { return palp::takeHaplyState(json, "049D", state); }) == palp::HaplyVerdict::good)
+    const bool       good =
+        palp::fuzzRead([&] { return palp::takeHaplyState(json, "049D", state); }) == palp::HaplyVerdict::good;
+    ++(good ? palp::fuzzVerdicts.accepted : palp::fuzzVerdicts.refused);
+    if (good)
         palp::fuzzExpect(std::isfinite(glm::length(state.position) + glm::length(state.velocity) +
                                        glm::length(state.rendered.value_or(glm::dvec3(0)))) &&
                          std::abs(glm::length(state.orientation) - 1) < 1e-6);

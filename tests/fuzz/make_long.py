@@ -4,9 +4,10 @@
 usage: make_long.py FOLDER RECORDS
 
 A record is a point, a row, a tick, a message, or a comment where a file may hold only a few of anything. Two such folders
-let palp_fuzz_replay --linear compare how long a reader takes for either. Beside it, for each reader of JSON, two files with
-lists that it refuses: one is ten times as deep, so that whoever prints it by recursion has no stack left, the other is of
-objects that are empty, which take the most memory.
+let palp_fuzz_replay --linear compare how long a reader takes for either. Beside that file, "long", there are others:
+"deep" and "wide", for each reader of JSON, lists that it refuses: one is ten times as deep, so that whoever prints it by
+recursion has no stack left, the other is of objects that are empty, which take the most memory; and of single formats what
+once took a time that grew with the square, or much memory for each byte.
 """
 import base64
 import json
@@ -173,11 +174,63 @@ def of_json(lists):
     }
 
 
+def same(count):
+    """Rows that differ but for one."""
+    return text(count) + "0 0 0\n"
+
+
+def bits(count):
+    """Polygons of 200 corners each, whose numbers have a byte."""
+    corners = range(200)
+    head = (f"ply\nformat binary_little_endian 1.0\nelement vertex 200\nproperty float x\nproperty float y\nproperty float z\n"
+            f"element face {count // 10}\nproperty list uchar uchar vertex_indices\nend_header\n").encode()
+    return head + b"".join(struct.pack("<3f", *p[:3]) for p in points(200)) + bytes([200, *corners]) * (count // 10)
+
+
+def comb(count):
+    """Polygons of 256 corners each, which are not convex: each has one ear after the other in its teeth."""
+    corners = [(k, 0.0 if k % 2 else 10.0 + k % 5) for k in range(254)] + [(253, -1.0), (0, -1.0)]
+    faces = count // 160
+    return (f"ply\nformat ascii 1.0\nelement vertex 256\nproperty float x\nproperty float y\nproperty float z\n"
+            f"element face {faces}\nproperty list int int vertex_indices\nend_header\n"
+            + "".join("%g %g 0\n" % c for c in corners) + ("256 " + " ".join(str(255 - k) for k in range(256)) + "\n") * faces)
+
+
+def single(count):
+    return "depth,force,probe\n" + "".join("%d,1,%x\n" % (n % 2, n) for n in range(count))
+
+
+def conditions(count):
+    head = trials(0)
+    return head + "".join(f"p,{n + 1},1,r,rating,c{n},,q,4,,1,7,s,,1,1,v\n" for n in range(count))
+
+
+def cells_of_nothing(count):
+    return trials(0) + "".join(f"p,{n + 1},1,r,rating,c,,q,4,,1,7,s,,1,1,v\n" for n in range(count))
+
+
+# What single readers once took too long for, or too much memory.
+SHAPES = {
+    ("text", "same"): same, ("ply", "bits"): bits, ("ply", "comb"): comb, ("probes", "single"): single,
+    ("trials", "conditions"): conditions, ("trials", "short"): cells_of_nothing,
+    ("vtk", "parts"): lambda count: vtk(9).split("POINT_DATA")[0] + "CELLS 0 0\n" * count,
+    ("recording", "keys"): lambda count: 's{"format": 1, "clock": "virtual", "device": "host", "command": "palpate", "scene": {%s}}'
+    % ", ".join('"k%d": 1' % n for n in range(count)),
+    ("recording", "markers"): lambda count: 'm{"time": 1, "text": [%s1]}\n' % ("{}," * 10 * count),
+    ("plan", "tasks"): lambda count: json.dumps({"title": "t", "conditions": [{"name": "even", "scene": "a.json"}],
+                                                  "tasks": [{"kind": [{}] * 15 * count}]}),
+    ("scene", "below"): lambda count: '{"cloud": "sample:sheet", "below": {%s}}' % ", ".join('"k%d": 1' % n for n in range(count)),
+    ("hand", "columns"): lambda count: "time,x,y,z" + ",a" * count + "\n" + ("0,0,0,0" + ",1" * count + "\n") * 2,
+    ("ply", "elements"): lambda count: ply(4).replace("end_header\n", "element face 0\nproperty list uchar int v\n" * count + "end_header\n"),
+}
+
+
 def main():
     folder, count = pathlib.Path(sys.argv[1]), int(sys.argv[2])
     lists = {"deep": "[" * 10 * count + "]" * 10 * count, "wide": "[%s{}]" % ("{}," * 15 * count)}
     files = [(name, "long", write(count)) for name, write in FORMATS.items()]
     files += [(name, file, content) for file, text in lists.items() for name, content in of_json(text).items()]
+    files += [(name, file, write(count)) for (name, file), write in SHAPES.items()]
     for name, file, content in files:
         (folder / name).mkdir(parents=True, exist_ok=True)
         (folder / name / file).write_bytes(content if isinstance(content, bytes) else content.encode())

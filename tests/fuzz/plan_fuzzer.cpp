@@ -38,7 +38,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     static const Folder kFolder;
     palp::fuzzRefusals([&] {
         const std::string_view text(reinterpret_cast<const char*>(data), size);
-        check(palp::study::parsePlan(text, "fuzz", kFolder.path()));
+        check(palp::fuzzRead([&] { return palp::study::parsePlan(text, "fuzz", kFolder.path()); }));
     });
     return 0;
 }

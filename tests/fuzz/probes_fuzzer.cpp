@@ -7,7 +7,8 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size)
 {
     palp::fuzzRefusals([&] {
-        for (const auto& probe : palp::fit::parseProbes({reinterpret_cast<const char*>(data), size}, "fuzz")) {
+        const std::string_view text(reinterpret_cast<const char*>(data), size);
+        for (const auto& probe : palp::fuzzRead([&] { return palp::fit::parseProbes(text, "fuzz"); })) {
             palp::fuzzExpect(probe.depth.size() >= palp::fit::kFewestRows && probe.depth.size() == probe.force.size());
             palp::fuzzExpect(probe.time.empty() || probe.time.size() == probe.depth.size());
             palp::fuzzExpect(std::isfinite(probe.deepest()) && std::isfinite(probe.forceRange()));

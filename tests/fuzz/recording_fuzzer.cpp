@@ -40,7 +40,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (size == 0) return 0;
     const auto& path = folder.with(char(data[0]), {reinterpret_cast<const char*>(data) + 1, size - 1});
     palp::fuzzRefusals([&] {
-        const palp::RecordedSession description = palp::readDescription(path);
+        const auto description = palp::fuzzRead([&] { return palp::readDescription(path); });
         palp::fuzzExpect(description.records.empty() && description.folder == path);
     });
     palp::fuzzRefusals([&] {

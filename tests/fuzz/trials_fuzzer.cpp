@@ -1,5 +1,6 @@
 #include <string_view>
 
+#include "engine/tools/study/study_analysis.h"
 #include "engine/tools/study/trial_table.h"
 #include "tests/fuzz/fuzz_expect.h"
 #include "tests/support/temporary_folder.h"
@@ -10,6 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const auto path = kFolder.write("trials.csv", std::string_view(reinterpret_cast<const char*>(data), size));
     palp::fuzzRefusals([&] {
         const auto before = palp::fuzzRead([&] { return palp::study::readTrials(path); });
+        static_cast<void>(palp::study::analyse(before, {}));
         // A table that can be read can be continued, and nothing of it is lost.
         palp::study::TrialTable table(path);
         palp::fuzzExpect(table.rows().size() == before.size());

@@ -321,6 +321,8 @@ TEST_F(SessionFolder, BrokenFilesAreNamed)
 
     put("markers.jsonl", "{\"time\": 1}\n");
     EXPECT_TRUE(holds(refusal(), {"markers.jsonl: line 1", "\"text\""})) << refusal();
+    put("markers.jsonl", "{\"time\": 1, \"text\": \"" + std::string(20000, 'a') + "\"}\n");
+    EXPECT_TRUE(holds(refusal(), {"markers.jsonl: line 1", "at most 16384 bytes", "found 20023"})) << refusal();
     put("markers.jsonl", "");
     std::string counted = json;
     counted.replace(counted.find("\"samples\": 100"), 14, "\"samples\": 99 ");

@@ -77,7 +77,12 @@ TEST(Held, MistakesAreNamed)
     refused(R"({"ball": [0, 0, 0], "radius": -1})", {"held", "radius", "1e-6 to 100 m"});
     refused(R"({"points": [], "radius": 1})", {"held", "points", "1 to 10000 places"});
     refused(R"({"cone": 1})", {"held", "unknown key \"cone\"", "box"});
-    refused(R"([])", {"held", "1 to 64 regions"});
+    refused(R"([])", {"key \"held\": expected a list of 1 to 64 regions"});
+    refused(R"([{"ball": [0, 0, 0], "radius": 1}, {"ball": 1, "radius": 1}])", {"held region 2: key \"ball\""});
+    std::string places = "[0, 0, 0]";
+    for (int n = 1; n < 5001; ++n) places += ", [0, 0, 0]";
+    const std::string half = R"({"radius": 1, "points": [)" + places + "]}";
+    refused("[" + half + ", " + half + "]", {"held", "at most 10000 places in all regions", "found 10002"});
     refused(R"("firmly")", {"held"});
     refused(R"({"ball": [9, 9, 9], "radius": 0.1})", {"held", "at least one point", "1800", "metres"});
     refused(R"(7)", {"held", "box"});

@@ -373,44 +373,41 @@ void CloudRows::mergePlaces()
 {
     std::vector<std::uint32_t> places = placesOf(positions_);
     if (places.empty()) return;
-    struct Sum {
-        double                                      logarithms = 0; ///< of the stiffness
-        std::array<double, kOtherProperties.size()> others{};
-        std::uint32_t                               points = 0;
-        bool                                        differ = false;
-    };
-    std::vector<Sum> sums;
+    const std::size_t          count = std::size_t(std::ranges::max(places)) + 1;
+    std::vector<std::uint32_t> points(count); // at each place
+    std::vector<double>        above(count);  // [1] sum of the logarithms of stiffnesses over the place's first
+    std::size_t                known = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
         const std::size_t place = places[i];
-        if (place == sums.size()) { // the first point of a place; never behind i, so that nothing is overwritten
-            sums.emplace_back();
+        ++points[place];
+        if (place == known) { // the first point of a place; never behind i, so that nothing is overwritten
+            ++known;
             positions_[place] = positions_[i];
             stiffness_[place] = stiffness_[i];
             for (std::vector<double>& other : others_)
                 if (!other.empty()) other[place] = other[i];
             if (!normals_.empty()) normals_[place] = normals_[i];
-        } else if (!normals_.empty()) {
-            normals_[place] += normals_[i];
+            continue;
         }
-        sums[place].logarithms += std::log(stiffness_[i]);
-        for (std::size_t k = 0; k < others_.size(); ++k)
-            if (!others_[k].empty()) sums[place].others[k] += others_[k][i];
-        sums[place].differ |= stiffness_[i] != stiffness_[place];
-        ++sums[place].points;
+        above[place] += std::log(stiffness_[i]) - std::log(stiffness_[place]);
+        for (std::vector<double>& other : others_)
+            if (!other.empty()) other[place] += other[i];
+        if (!normals_.empty()) normals_[place] += normals_[i];
     }
-    for (std::size_t place = 0; place < sums.size(); ++place) {
-        for (std::size_t k = 0; k < others_.size() && sums[place].points > 1; ++k)
-            if (!others_[k].empty()) others_[k][place] = sums[place].others[k] / sums[place].points;
-        if (sums[place].differ) stiffness_[place] = std::exp(sums[place].logarithms / sums[place].points);
-        if (normals_.empty() || sums[place].points == 1) continue;
-        normals_[place] = directionOf(normals_[place].x, normals_[place].y, normals_[place].z);
+    for (std::size_t place = 0; place < count; ++place) {
+        if (points[place] == 1) continue;
+        for (std::vector<double>& other : others_)
+            if (!other.empty()) other[place] /= points[place];
+        if (above[place] != 0) // the geometric mean
+            stiffness_[place] = std::exp(std::log(stiffness_[place]) + above[place] / points[place]);
+        if (!normals_.empty()) normals_[place] = directionOf(normals_[place].x, normals_[place].y, normals_[place].z);
     }
-    report_.duplicatePositions = places.size() - sums.size();
-    positions_.resize(sums.size());
-    stiffness_.resize(sums.size());
+    report_.duplicatePositions = places.size() - count;
+    positions_.resize(count);
+    stiffness_.resize(count);
     for (std::vector<double>& other : others_)
-        if (!other.empty()) other.resize(sums.size());
-    if (!normals_.empty()) normals_.resize(sums.size());
+        if (!other.empty()) other.resize(count);
+    if (!normals_.empty()) normals_.resize(count);
     places_ = std::move(places);
     warn(std::to_string(report_.duplicatePositions) +
          " points lie exactly where an earlier one lies and were merged with it");

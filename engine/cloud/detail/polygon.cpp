@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
@@ -10,7 +11,7 @@
 namespace palp {
 namespace {
 
-/// Most corners of a polygon that is tried: the time grows with the cube of their number.
+/// Most corners of a polygon that is tried: the time grows with the square of their number, rarely more.
 constexpr std::size_t kMostCorners = 256;
 
 /// Area of a triangle of a fan, over that of the polygon, below which it is no more than rounded [1].
@@ -76,13 +77,28 @@ std::optional<std::vector<Triangle>> trianglesOfConcave(std::span<const glm::dve
     std::vector<std::uint32_t> left(corners.size());
     std::iota(left.begin(), left.end(), 0U);
     std::vector<Triangle> triangles;
-    while (left.size() > 3) {
-        std::size_t place = 0;
-        while (place < left.size() && !isEar(flat, left, place)) ++place;
-        if (place == left.size()) return std::nullopt; // it crosses itself
-        triangles.push_back(
-            {left[(place + left.size() - 1) % left.size()], left[place], left[(place + 1) % left.size()]});
+    // An ear that is cut off changes its two neighbours, rarely others, which are asked again only when none is left.
+    std::vector<char> isNone(corners.size());
+    bool              askedAgain = false;
+    for (std::size_t place = 0, tried = 0; left.size() > 3;) {
+        if (tried == left.size()) {
+            if (std::exchange(askedAgain, true)) return std::nullopt; // it crosses itself
+            std::ranges::fill(isNone, false);
+            tried = 0;
+        }
+        const std::size_t next = (place + 1) % left.size(), last = (place + left.size() - 1) % left.size();
+        if (isNone[place] || !isEar(flat, left, place)) {
+            isNone[place] = true;
+            place         = next;
+            ++tried;
+            continue;
+        }
+        triangles.push_back({left[last], left[place], left[next]});
+        isNone[last] = isNone[next] = askedAgain = false;
         left.erase(left.begin() + std::ptrdiff_t(place));
+        isNone.erase(isNone.begin() + std::ptrdiff_t(place));
+        place %= left.size();
+        tried = 0;
     }
     triangles.push_back({left[0], left[1], left[2]});
     return triangles;

@@ -217,6 +217,8 @@ private:
         cells.kind = key == "CELLS"      ? VtkCells::Kind::mixed
                      : key == "POLYGONS" ? VtkCells::Kind::polygons
                                          : VtkCells::Kind::strips;
+        if (std::ranges::find(piece_.cells, cells.kind, &VtkCells::kind) != piece_.cells.end())
+            failBefore(words[0], "expected " + key + " once");
         piece_.cells.push_back(std::move(cells));
     }
 

@@ -29,7 +29,11 @@ public:
         if (all > kMostVoxels)
             throw Error(name_ + ": expected at most " + std::to_string(kMostVoxels) + " values, found " + shape() +
                         "; take every second one");
-        values_.resize(std::size_t(all));
+        // Where values come in the order in which they are kept, the file's promise alone fills no memory.
+        if (firstIsFastest_)
+            values_.reserve(std::size_t(all));
+        else
+            values_.resize(std::size_t(all));
     }
 
     /// \throws Error naming the index if the value is NaN, infinite, negative or beyond what a float holds
@@ -46,9 +50,12 @@ public:
             throw Error(name_ + ": the value at [" + std::to_string(node[0]) + ", " + std::to_string(node[1]) + ", " +
                         std::to_string(node[2]) + "] is " + wrong +
                         "; expected a stiffness above zero, or zero where nothing was measured");
-        values_[std::size_t(node[0]) +
-                std::size_t(size_[0]) * (std::size_t(node[1]) + std::size_t(size_[1]) * std::size_t(node[2]))] =
-            float(value);
+        if (firstIsFastest_)
+            values_.push_back(float(value));
+        else
+            values_[std::size_t(node[0]) +
+                    std::size_t(size_[0]) * (std::size_t(node[1]) + std::size_t(size_[1]) * std::size_t(node[2]))] =
+                float(value);
         ++added_;
     }
 

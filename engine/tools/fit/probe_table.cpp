@@ -14,6 +14,7 @@ namespace palp::fit {
 namespace {
 
 constexpr std::size_t kLargestFile = std::size_t(256) << 20; // [bytes]
+constexpr std::size_t kMostProbes  = 10'000;                 // a survey has hundreds; each takes some 400 bytes
 constexpr double      kDeepest     = 0.1;                    // [m] no probe goes deeper: such numbers are millimetres
 constexpr double      kStrongest   = 1e3;                    // [N] no probe pushes harder: such numbers are mN
 
@@ -245,6 +246,10 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
             header->probe() && *header->probe() < cells.size() ? std::string(cells[*header->probe()]) : "1";
         const auto [at, fresh] = known.try_emplace(called, drafts.size());
         if (fresh) {
+            if (drafts.size() == kMostProbes)
+                throw Error(where() + ": expected at most " + std::to_string(kMostProbes) +
+                            " probes, found more; the column \"probe\" names "
+                            "them: it is the same in all rows of one touch");
             drafts.emplace_back();
             drafts.back().probe.name = called;
             const auto point         = [&](Column x, Column y, Column z) -> std::optional<glm::dvec3> {

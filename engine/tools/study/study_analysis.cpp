@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "engine/core/contract.h"
 #include "engine/core/uniform.h"
@@ -129,21 +131,21 @@ Interval wilsonInterval(std::size_t k, std::size_t n)
 
 std::vector<AnswerSummary> analyse(const std::vector<TrialRow>& rows, const Stiffnesses& stiffnesses)
 {
-    std::vector<Group> groups;
+    std::vector<Group>                                         groups; // in the order of the rows
+    std::map<std::pair<std::string, std::string>, std::size_t> places; // of a task and what it asks about
     for (const TrialRow& row : rows) {
-        const std::string what  = whatOf(row);
-        auto              group = std::ranges::find_if(
-                         groups, [&](const Group& g) { return g.summary.task == row.task && g.summary.what == what; });
-        if (group == groups.end()) {
-            group                   = groups.emplace(groups.end());
-            group->summary.task     = row.task;
-            group->summary.kind     = row.kind;
-            group->summary.question = row.question;
-            group->summary.what     = what;
-            group->first            = row.first;
-            group->second           = row.second;
+        const std::string what    = whatOf(row);
+        const auto [place, isNew] = places.try_emplace({row.task, what}, groups.size());
+        if (isNew) {
+            Group& group           = groups.emplace_back();
+            group.summary.task     = row.task;
+            group.summary.kind     = row.kind;
+            group.summary.question = row.question;
+            group.summary.what     = what;
+            group.first            = row.first;
+            group.second           = row.second;
         }
-        add(*group, row);
+        add(groups[place->second], row);
     }
     std::vector<AnswerSummary> summaries;
     for (const Group& group : groups) summaries.push_back(finished(group, stiffnesses));

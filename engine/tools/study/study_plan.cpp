@@ -18,8 +18,9 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::size_t kLargestFile    = std::size_t(1) << 20; ///< [bytes]; real plans have a few thousand
-constexpr int         kMostConditions = 26, kMostTasks = 20, kMostRepetitions = 100; ///< more would tire participants
+constexpr std::size_t kLargestFile    = std::size_t(1) << 20;        ///< [bytes]; real plans have a few thousand
+constexpr std::size_t kMostConditions = 26, kMostTasks = 20;         ///< more would tire participants
+constexpr int         kMostRepetitions = 100;                        ///< as would more of these
 constexpr double      kLeastSeconds = GovernorSettings{}.engageTime; ///< of one touch [s]; then the force is fully on
 constexpr double      kMostSeconds  = 3600;                          ///< of one touch [s]
 constexpr std::size_t kLongestText  = 500;                           ///< [bytes] of a text that a participant reads
@@ -35,16 +36,9 @@ std::string textOf(const JsonObject& object, const char* key)
 }
 
 /// Returns the members of a list of objects, each named by its kind and number in errors.
-std::vector<JsonObject> objectsIn(const JsonObject& object, const char* key, const std::string& kind, int most)
+std::vector<JsonObject> objectsIn(const JsonObject& object, const char* key, const std::string& kind, std::size_t most)
 {
-    const Json list = Json::parse(object.json(key));
-    if (!list.is_array() || list.empty() || list.size() > std::size_t(most))
-        object.refuse(key, "a list of 1 to " + std::to_string(most) + " objects");
-    std::vector<JsonObject> objects;
-    for (const Json& one : list)
-        objects.push_back(
-            JsonObject::parse(one.dump(), object.where() + ": " + kind + " " + std::to_string(objects.size() + 1)));
-    return objects;
+    return object.objects(key, most, kind, "a list of 1 to " + std::to_string(most) + " objects");
 }
 
 using Flags = std::map<std::string, std::string, std::less<>>;
@@ -125,7 +119,7 @@ void readPairs(Task& task, const JsonObject& object, const std::vector<Condition
 {
     const std::string where = object.where() + ": key \"pairs\"";
     const Json        list  = Json::parse(object.json("pairs"));
-    if (!list.is_array() || list.empty() || list.size() > std::size_t(kMostConditions))
+    if (!list.is_array() || list.empty() || list.size() > kMostConditions)
         object.refuse("pairs", "a list of 1 to 26 pairs of names of conditions");
     for (const Json& one : list) {
         const auto pair = conditionsIn(one, conditions, where);

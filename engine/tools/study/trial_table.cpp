@@ -177,7 +177,9 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
         throw Error(file.string() + ": line 1: expected the columns " + head.substr(0, head.size() - 1) +
                     ", found others");
     std::vector<TrialRow> rows;
-    std::size_t           number = 2;
+    constexpr std::size_t kShortest = 30; // [bytes] of a row that has sense
+    rows.reserve(std::min(std::size_t(std::ranges::count(text, '\n')), text.size() / kShortest)); // they are large
+    std::size_t number = 2;
     for (std::size_t begin = head.size(); begin < text.size(); ++number) {
         const std::size_t end   = text.find('\n', begin);
         const std::string where = file.string() + ": line " + std::to_string(number);

@@ -60,6 +60,13 @@ TEST(ProbeTable, WithoutNamesAllRowsAreOneProbeAndWithTimesItMayGoBack)
     EXPECT_EQ(probes[0].forceRange(), 1);
 }
 
+TEST(ProbeTable, ANameForEachRowIsRefused)
+{
+    std::string text = "probe,depth,force\n";
+    for (int n = 0; n <= 10000; ++n) text += std::to_string(n) + ",0,1\n";
+    EXPECT_TRUE(says(text, {"line 10002", "at most 10000 probes", "\"probe\""}));
+}
+
 TEST(ProbeTable, EachMistakeIsOneSentenceWithItsLineAndARemedy)
 {
     EXPECT_TRUE(
