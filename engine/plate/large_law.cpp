@@ -141,11 +141,10 @@ struct Shapes {
     }
 };
 
-NodeField sum(double s, const NodeField& a, double t, const NodeField& b)
+/// Adds a multiple of a field to another.
+void add(NodeField& to, double times, const NodeField& field)
 {
-    NodeField result = a;
-    for (std::size_t n = 0; n < result.values().size(); ++n) result.values()[n] = s * a.values()[n] + t * b.values()[n];
-    return result;
+    for (std::size_t n = 0; n < to.values().size(); ++n) to.values()[n] += times * field.values()[n];
 }
 
 /// Adds a shape, and finds the stresses of it alone and with those before.
@@ -166,32 +165,6 @@ void addShape(Shapes& shapes, const Shell& shell, const Solves& solves, NodeFiel
         shapes.stretch[i][n] = std::move(loads[i]);
     }
     shapes.f.push_back(solves.flat() ? NodeField(shell.bending.grid) : std::move(fields[n + 1]));
-}
-
-/// Finds the first terms of the deflection in powers of the force. With x = (w, phi), K the linear shell's matrix and Q
-/// the gradient of T as a symmetric product,  K x1 = load,  K x2 = -Q(x1, x1),  K x3 = -2 Q(x1, x2).
-Shapes shapesOf(const Shell& shell, const NodeField& load, const NodeField& linear, const Solves& solves)
-{
-    Shapes       s;
-    const Plate& membrane = solves.membrane();
-    addShape(s, shell, solves, linear, load);
-    const NodeField first = s.f[0]; // phi of x1
-    NodeField       bent  = stretchForces(membrane, first, s.w[0]);
-    if (!solves.flat()) {
-        NodeField right = sum(-1, bent, -1, couplingForces(shell, s.g[0][0]));
-        NodeField w     = solves.bend(right);
-        addShape(s, shell, solves, std::move(w), std::move(right));
-        const NodeField second = sum(1, s.f[1], 1, s.g[0][0]); // phi of x2
-        bent  = sum(1, stretchForces(membrane, first, s.w[1]), 1, stretchForces(membrane, second, s.w[0]));
-        right = sum(-1, bent, -2, couplingForces(shell, s.g[0][1]));
-        w     = solves.bend(right);
-        addShape(s, shell, solves, std::move(w), std::move(right));
-        return s;
-    }
-    NodeField right = sum(-1, stretchForces(membrane, s.g[0][0], s.w[0]), 0, bent); // w of x2 is 0, phi g
-    NodeField w     = solves.bend(right);
-    addShape(s, shell, solves, std::move(w), std::move(right));
-    return s;
 }
 
 /// Returns the energy of a sum of the shapes; phi is the one that goes with it.
@@ -274,6 +247,63 @@ double tangentOf(const Quartic::Local& here, double stiffness)
     return here.second[0][0] + here.second[0][1] * y + here.second[0][2] * z;
 }
 
+/// Returns the forces that a sum of the shapes leaves over, of those on the nodes: none where it satisfies all equations.
+/// \param parts  of the shapes
+/// \param force  of the load [N]
+NodeField leftOver(const Shapes& shapes, const Shell& shell, const Solves& solves, const NodeField& load,
+                   const Numbers& parts, double force)
+{
+    const PlateGrid& grid = shell.bending.grid;
+    NodeField        left(grid), w(grid), phi(grid), ofSlopes(grid);
+    add(left, force, load);
+    for (std::size_t i = 0; i < shapes.w.size(); ++i) {
+        add(left, -parts[i], shapes.right[i]);
+        add(w, parts[i], shapes.w[i]);
+        add(phi, parts[i], shapes.f[i]);
+        for (std::size_t j = 0; j < shapes.w.size(); ++j) add(ofSlopes, parts[i] * parts[j], shapes.slopes(i, j));
+    }
+    add(phi, 1, ofSlopes);
+    add(left, -1, stretchForces(solves.membrane(), phi, w));
+    if (!solves.flat()) add(left, -1, couplingForces(shell, ofSlopes));
+    return left;
+}
+
+/// Adds the answer of the linear shell to what the best sum of the shapes at a depth leaves over.
+void addWhatIsMissing(Shapes& shapes, const Shell& shell, const NodeField& load, const Solves& solves, double depth)
+{
+    const Quartic                    raw    = energyOf(shapes);
+    const std::array<Numbers, kMost> mix    = byDepth(shapes, load, raw);
+    const Quartic                    energy = raw.changed(mix);
+    Numbers                          at{depth}, parts{};
+    const double                     force = leastAt(energy, at).slope[0];
+    for (std::size_t i = 0; i < kMost; ++i)
+        for (std::size_t k = 0; k < kMost; ++k) parts[i] += mix[i][k] * at[k];
+    NodeField right = leftOver(shapes, shell, solves, load, parts, force);
+    NodeField w     = solves.bend(right);
+    addShape(shapes, shell, solves, std::move(w), std::move(right));
+}
+
+/// Finds the shapes: the linear one; of a curved sheet the next term of the deflection in powers of the force, with
+/// x = (w, phi), K the linear shell's matrix and Q the gradient of T as a symmetric product K x2 = -Q(x1, x1); and what both
+/// miss where the sheet is pressed deep, which is the third term and more.
+Shapes shapesOf(const Shell& shell, const NodeField& load, const NodeField& linear, const Solves& solves, double reach)
+{
+    // Of the reach [1], found by trial from 0.4 to 3 on 23 sheets: the error up to nine tenths of the reach is 0.4 % in the
+    // median and 2.9 at most; at 0.8 it is 0.6 and 3.6, at 2 it is 0.6 and 5.
+    constexpr double kDeep = 1.4;
+    Shapes           s;
+    addShape(s, shell, solves, linear, load);
+    if (!solves.flat()) {
+        NodeField right(shell.bending.grid);
+        add(right, -1, stretchForces(solves.membrane(), s.f[0], s.w[0]));
+        add(right, -1, couplingForces(shell, s.g[0][0]));
+        NodeField w = solves.bend(right);
+        addShape(s, shell, solves, std::move(w), std::move(right));
+    }
+    addWhatIsMissing(s, shell, load, solves, kDeep * reach);
+    return s;
+}
+
 } // namespace
 
 LargeLaw largeLaw(const Shell& shell, const NodeField& load, const NodeField& linear, double reach, PlateSolver& solver,
@@ -281,7 +311,7 @@ LargeLaw largeLaw(const Shell& shell, const NodeField& load, const NodeField& li
 {
     PALP_EXPECT(reach > 0, "a law of no reach");
     const Solves  solves(shell, solver, tolerance);
-    const Shapes  shapes = shapesOf(shell, load, linear, solves);
+    const Shapes  shapes = shapesOf(shell, load, linear, solves, reach);
     const Quartic raw    = energyOf(shapes);
     const Quartic energy = raw.changed(byDepth(shapes, load, raw));
 

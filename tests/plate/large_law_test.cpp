@@ -23,10 +23,10 @@ struct Pressed {
     LargeLaw  law;
 };
 
-Pressed pressed(const char* name, int cells, const char* processor, double radius = 4e-3)
+Pressed pressed(const Shell& shell, const char* processor, double radius = 4e-3)
 {
     Pressed result;
-    result.shell = named(name, cells);
+    result.shell = shell;
     PlateSolver solver(processor);
     result.load   = fingertip(result.shell.bending.grid, radius);
     result.linear = ReferenceShellSolver(result.shell).solve(result.load).deflection;
@@ -34,14 +34,22 @@ Pressed pressed(const char* name, int cells, const char* processor, double radiu
     return result;
 }
 
-/// Largest error of the force up to a depth [1].
-double errorOf(const Pressed& of, double until)
+Pressed pressed(const char* name, int cells, const char* processor)
+{
+    return pressed(named(name, cells), processor);
+}
+
+/// Largest errors of the force up to 0.8, 1.4 and 1.8 thicknesses [1].
+std::array<double, 3> errorsOf(const Pressed& of)
 {
     std::vector<double> depths;
-    for (double depth = 0.2e-3; depth < until + 1e-9; depth += 0.2e-3) depths.push_back(depth);
-    double most = 0;
-    for (const LargeState& state : pressDeep(of.shell, of.load, depths))
-        most = std::max(most, std::abs(of.law.forceAt(state.depth) / state.force - 1));
+    for (int n = 1; n <= 9; ++n) depths.push_back(0.2 * n * kThickness);
+    std::array<double, 3> most{};
+    for (const LargeState& state : pressDeep(of.shell, of.load, depths)) {
+        const double error = std::abs(of.law.forceAt(state.depth) / state.force - 1);
+        for (std::size_t k = 0; k < 3; ++k)
+            if (state.depth < std::array{0.81, 1.41, 1.81}[k] * kThickness) most[k] = std::max(most[k], error);
+    }
     return most;
 }
 
@@ -51,14 +59,42 @@ TEST(LargeLaw, IsThatOfAllEquationsUpToOnePointEightThicknesses)
         const char* name;
         double      close; // [1]
     };
-    // Measured on a footprint of 4 mm, in %: flat 0.05, supported dome 2.8, clamped dome 1.7, cylinder 1.5, spots of 10
-    // under the finger 1.4 and beside it 3.5, saddle 0.3. What is missing are shapes: it has three.
-    for (const auto& [name, close] : {Of{"flat", 0.002}, Of{"cap ss", 0.035}, Of{"cap clamped", 0.02},
-                                      Of{"cylinder", 0.02}, Of{"wart", 0.02}, Of{"beside", 0.04}, Of{"saddle", 0.01}}) {
-        const Pressed of = pressed(name, 32, "host");
-        EXPECT_LT(errorOf(of, 1.8e-3), close) << name;
-        EXPECT_LT(errorOf(of, 1.4e-3), 0.012) << name; // measured 1.1 % at most
-        EXPECT_LT(errorOf(of, 0.8e-3), 0.001) << name; // and 0.05 %
+    // Measured on a footprint of 4 mm, in %: flat 0.05, supported dome 0.3, clamped dome 0.9, cylinder 1.3, spots of 10
+    // under the finger 1.5 and beside it 2.0, saddle 0.3. What is missing are shapes: it has three.
+    for (const auto& [name, close] :
+         {Of{"flat", 0.002}, Of{"cap ss", 0.005}, Of{"cap clamped", 0.012}, Of{"cylinder", 0.016}, Of{"wart", 0.02},
+          Of{"beside", 0.022}, Of{"saddle", 0.01}}) {
+        const auto [little, more, most] = errorsOf(pressed(name, 32, "host"));
+        EXPECT_LT(most, close) << name;
+        EXPECT_LT(more, 0.009) << name;   // measured 0.8 % at most
+        EXPECT_LT(little, 0.001) << name; // and 0.095 %
+    }
+}
+
+TEST(LargeLaw, IsThatOfOtherSheetsToo)
+{
+    struct Of {
+        const char* name;
+        double      kx, kz; // [1/m]
+        Edge        edge;
+        double      times, beside; // a spot [1], [m]
+        double      radius;        // of the fingertip [m]
+    };
+    constexpr Edge kOn = Edge::supported, kIn = Edge::clamped;
+    // None of these was looked at while the depth was chosen at which shapes are found. Up to 1.8 thicknesses: 1.6 % at
+    // most, and 2.9 beside a spot of 30; 10 % with the third term of the expansion as the last shape.
+    for (const Of& of :
+         {Of{"shallow", 10, 10, kOn, 1, 0, 4e-3}, Of{"deep", 28, 28, kOn, 1, 0, 4e-3},
+          Of{"deep, clamped", 28, 28, kIn, 1, 0, 4e-3}, Of{"ellipsoid", 20, 8, kOn, 1, 0, 4e-3},
+          Of{"cylinder", 0, 20, kOn, 1, 0, 4e-3}, Of{"soft spot", 20, 20, kOn, 0.2, 0, 4e-3},
+          Of{"beside a soft spot", 20, 20, kOn, 0.2, 6e-3, 4e-3},
+          Of{"beside a spot of 30", 20, 20, kOn, 30, 5e-3, 4e-3}, Of{"wide fingertip", 20, 20, kOn, 1, 0, 7e-3},
+          Of{"the same, clamped", 20, 20, kIn, 1, 0, 7e-3}, Of{"narrow fingertip", 20, 20, kOn, 1, 0, 3e-3},
+          Of{"flat, spot", 0, 0, kIn, 10, 6e-3, 4e-3}, Of{"saddle", 20, -15, kOn, 1, 0, 4e-3},
+          Of{"from within", -20, -20, kOn, 1, 0, 4e-3}}) {
+        Shell shell = sheet(32, of.kx, of.kz, of.edge);
+        if (of.times != 1) addSpot(shell, of.times, of.beside);
+        EXPECT_LT(errorsOf(pressed(shell, "host", of.radius))[2], of.times > 10 ? 0.035 : 0.02) << of.name;
     }
 }
 
