@@ -53,8 +53,11 @@ class Gate(unittest.TestCase):
         self.assertEqual(self.judged([row(10), row(10, nodes=129)], [row(8), row(12.5, nodes=129)])[0], 0)
         self.assertEqual(self.judged([row(10), row(10, nodes=129)], [row(5), row(13, nodes=129)])[0], 1)
 
-    def test_rows_of_one_program_alone_do_not_count(self):
-        self.assertEqual(self.judged([row(10), row(100, "gone")], [row(10), row(1, "new")])[0], 0)
+    def test_what_the_new_program_alone_has_does_not_count_and_what_it_lacks_does(self):
+        self.assertEqual(self.judged([row(10)], [row(10), row(1, "new")])[0], 0)
+        status, said = self.judged([row(10), row(100, "gone")], [row(10)])
+        self.assertEqual(status, 1)
+        self.assertIn("gone", said)
         self.assertNotEqual(self.judged([row(10, "gone")], [row(10, "new")])[0], 0)
 
     def test_a_published_time_is_of_another_machine_and_the_runs_peers_take_its_place(self):

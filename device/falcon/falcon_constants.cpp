@@ -117,7 +117,7 @@ std::optional<FalconConstants> readFalconConstants(const std::string& serial)
     try {
         std::error_code failed;
         if (!fs::is_regular_file(file, failed)) throw Error(file.string() + ": it is no file"); // a pipe would wait
-        return parse(readWhole(file, kMost, "the calibration of a Falcon"), file.string(), serial);
+        return parse(readWhole(file, kMost, "the calibration of a Falcon", Pipes::refused), file.string(), serial);
     } catch (const Error& error) {
         throw Error(std::string("the Falcon's calibration is damaged: ") + error.what() + kRemedy);
     }

@@ -31,9 +31,12 @@ constexpr double kOpposite = -0.5, kOneSheet = 0.02;
 /// Least distance over the diagonal of the mesh [1], so that the numbers of cells fit into 20 bits.
 constexpr double kLeastDistance = 0x1p-20;
 
-/// Most points in a row along the longest edges of thin triangles, over `most` [1]. Of meshes with triangles of usual
-/// shapes the area is the bound.
-constexpr double kMostAlongEdges = 10;
+/// Most distances in a row along the longest edges of thin triangles: over `most`, or for each triangle of the mesh [1]. Each
+/// costs some 500 looks, a point of triangles of usual shapes 33: of those the area is the bound.
+constexpr double kMostAlongThin = 0.02, kAlongEach = 50;
+
+/// Area of a triangle over its longest edge times the distance from which on it is none of the thin ones [1].
+constexpr double kThin = 1.0 / 3;
 
 /// Bound of coordinates [m], so that no square overflows; files have a lower one.
 constexpr double kMostCoordinate = 1e100;
@@ -242,19 +245,29 @@ Surface surfaceOf(std::span<const glm::dvec3> vertices, std::span<const Triangle
         surface.area += area;
         surface.order.push_back(n);
     }
-    sortInSpace(surface);
     return surface;
 }
 
-/// Returns the distance that keeps the number of points in bounds [m].
+/// Returns how many distances there are in a row along the triangles that are longer than it and much thinner [1].
+double distancesAlongThin(const Surface& surface, double distance)
+{
+    double all = 0;
+    for (const std::uint32_t face : surface.order) {
+        const Facet facet = surface.facet(face);
+        if (facet.longest > distance)
+            all += std::max(0.0, facet.longest / distance - facet.area / (kThin * distance * distance));
+    }
+    return all;
+}
+
+/// Returns the distance that keeps the number of points in bounds [m], and the time.
 double boundedDistance(const Surface& surface, const ScatterSettings& settings)
 {
-    double distance = std::max(settings.distance, kLeastDistance * glm::length(surface.high - surface.low));
-    distance        = std::max(distance, std::sqrt(surface.area / double(settings.most)));
-    double edges    = 0; // of triangles that are longer than the distance [m]
-    for (const std::uint32_t face : surface.order)
-        if (const double longest = surface.facet(face).longest; longest > distance) edges += longest;
-    return std::max(distance, edges / (kMostAlongEdges * double(settings.most)));
+    double distance   = std::max(settings.distance, kLeastDistance * glm::length(surface.high - surface.low));
+    distance          = std::max(distance, std::sqrt(surface.area / double(settings.most)));
+    const double most = std::max(kMostAlongThin * double(settings.most), kAlongEach * double(surface.order.size()));
+    while (distancesAlongThin(surface, distance) > most) distance *= 1.25;
+    return distance;
 }
 
 /// A part of a triangle, by the weights of its corners.
@@ -403,13 +416,20 @@ std::vector<double> eachPoint(const MeshPoints& points, std::span<const Triangle
 
 } // namespace
 
+double scatterDistance(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
+                       const ScatterSettings& settings)
+{
+    return boundedDistance(surfaceOf(vertices, faces), settings);
+}
+
 MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
                        const ScatterSettings& settings)
 {
     PALP_EXPECT(settings.distance > 0 && std::isfinite(settings.distance) && settings.most > 0,
                 "points are scattered at a distance above 0, not " + std::to_string(settings.distance));
-    const Surface surface = surfaceOf(vertices, faces);
-    MeshPoints    none;
+    Surface surface = surfaceOf(vertices, faces);
+    if (!surface.order.empty()) sortInSpace(surface);
+    MeshPoints none;
     none.wanted = none.distance = settings.distance;
     none.degenerate             = surface.degenerate;
     if (surface.order.empty()) return none;

@@ -42,7 +42,8 @@ struct MeshPoints {
 /// are closer than a fiftieth of the distance. It is indifferent to holes, to edges with any number of triangles,
 /// to triangles that occur twice or are turned round.
 ///
-/// The distance grows until area / distance^2 is at most `most`, and further where thin triangles still need more.
+/// The distance grows until area / distance^2 is at most `most`, and where long thin triangles would take long: see
+/// scatterDistance(). It is doubled where points are still too many.
 /// \param vertices  finite [m]
 /// \param faces     of the vertices
 /// \return as many points as find room, about 0.76 area / distance^2; none if no triangle has an area. The same bits on
@@ -55,6 +56,11 @@ struct MeshPoints {
 ///          covers a part; parts smaller than a disc get a dart each. Memory is then read in order, and the sets are a
 ///          little denser than random ones: about 0.76 points on distance^2 instead of 0.70
 [[nodiscard]] MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
+                                     const ScatterSettings& settings);
+
+/// Returns the distance that scatterOver() begins with [m]: the one that is asked for, or a larger one, so that neither a large
+/// surface nor a few kilobytes of long thin triangles take hours.
+[[nodiscard]] double scatterDistance(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
                                      const ScatterSettings& settings);
 
 /// Returns the values of the points, from those of the vertices, weighted as the points lie between the corners.

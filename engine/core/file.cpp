@@ -29,15 +29,39 @@ std::string reasonOfErrno()
     throw Error(path.string() + ": cannot be written: " + reason);
 }
 
-/// Whether somebody else put this link into a folder where anybody may write. The kernel follows no such link either
-/// (fs.protected_symlinks); whoever resolves links by himself has to look, too.
-bool isStrangersLink(const std::filesystem::path& link)
+/// Whether somebody else put this into a folder where anybody may write.
+bool isStrangers(const struct stat& own, const std::filesystem::path& path)
 {
-    struct stat own {
-    }, folder{};
-    const std::string parent = link.has_parent_path() ? link.parent_path().string() : ".";
-    if (::lstat(link.c_str(), &own) != 0 || ::stat(parent.c_str(), &folder) != 0) return false;
+    struct stat       folder {};
+    const std::string parent = path.has_parent_path() ? path.parent_path().string() : ".";
+    if (::stat(parent.c_str(), &folder) != 0) return false;
     return (folder.st_mode & S_IWOTH) && own.st_uid != ::geteuid() && own.st_uid != folder.st_uid;
+}
+
+/// Refuses a link of somebody else, which the kernel does not follow either (fs.protected_symlinks) but whoever resolves links
+/// by himself does; and his pipe or device, in which what is written would be lost to us.
+/// \param what  "a link"
+void refuseStrangers(const std::filesystem::path& path, const struct stat& own, const std::filesystem::path& place,
+                     const std::string& what)
+{
+    if (isStrangers(own, place))
+        refuseToWrite(path, place.string() + " is " + what +
+                                " that another user put into a folder where anybody may write; remove it, or name "
+                                "another file");
+}
+
+/// Opens what is no file, such as a pipe or /dev/null, for writing.
+int openOther(const std::filesystem::path& path, const std::filesystem::path& place)
+{
+    const auto  what = [](const struct stat& of) { return S_ISFIFO(of.st_mode) ? "a pipe" : "no file"; };
+    struct stat seen {};
+    if (::lstat(place.c_str(), &seen) == 0) refuseStrangers(path, seen, place, what(seen)); // a pipe may block
+    const int   handle = ::open(place.c_str(), O_WRONLY | O_CLOEXEC);
+    struct stat opened {};
+    if (handle < 0 || ::fstat(handle, &opened) != 0 || !isStrangers(opened, place)) return handle;
+    ::close(handle); // it was changed meanwhile
+    refuseStrangers(path, opened, place, what(opened));
+    return -1;
 }
 
 /// Returns where a chain of links leads to, so that a link stays a link when its file is replaced.
@@ -48,9 +72,8 @@ std::filesystem::path behindLinks(const std::filesystem::path& path)
     std::error_code       status;
     for (int links = 0; std::filesystem::is_symlink(place, status); ++links) {
         if (links == kMostLinks) refuseToWrite(path, "too many links lead from one to the next");
-        if (isStrangersLink(place))
-            refuseToWrite(path, place.string() + " is a link that another user put into a folder where anybody may " +
-                                    "write; remove it, or name another file");
+        struct stat own {};
+        if (::lstat(place.c_str(), &own) == 0) refuseStrangers(path, own, place, "a link");
         const std::filesystem::path target = std::filesystem::read_symlink(place, status);
         if (status) refuseToWrite(path, status.message());
         place = place.parent_path() / target;
@@ -202,9 +225,9 @@ std::uint64_t sizeOfFile(const std::filesystem::path& path)
     return size;
 }
 
-std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected)
+std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected, Pipes pipes)
 {
-    std::ifstream in = openForReading(path);
+    std::ifstream in = pipes == Pipes::read ? openForReading(path) : openRegularFile(path);
     std::string   text;
     for (char part[65536]; text.size() <= most && in; text.append(part, std::size_t(in.gcount())))
         in.read(part, sizeof part);
@@ -225,7 +248,7 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     errno = 0;
     std::optional<Draft> draft;
     if (replaceable) draft.emplace(place);
-    OpenFile file(draft ? draft->handle() : ::open(place.c_str(), O_WRONLY | O_CLOEXEC));
+    OpenFile file(draft ? draft->handle() : openOther(path, place));
     if (!file.isOpen()) refuseToWrite(path, reasonOfErrno());
     if (draft) keepMode(draft->handle(), place);
     std::ostream stream(&file);

@@ -21,11 +21,16 @@ namespace palp {
 /// \throws Error naming the path if it is no regular file
 [[nodiscard]] std::uint64_t sizeOfFile(const std::filesystem::path& path);
 
+/// What a pipe is where a file is expected: read to its end, or refused where nobody means one, as in the folder of a recording,
+/// because a pipe that nobody writes into is waited for without an end.
+enum class Pipes { read, refused };
+
 /// Returns the whole content of a small file.
 /// \param most      largest size that is accepted [bytes]
 /// \param expected  description of such a file, for the error about one that is longer
 /// \throws Error naming the path and the reason
-[[nodiscard]] std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected);
+[[nodiscard]] std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected,
+                                    Pipes pipes = Pipes::read);
 
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
 /// After a failure (an exception in `write`, a full disk) an older file at `path` is as it was and no partly written

@@ -27,7 +27,7 @@ std::vector<Marker> readMarkers(const std::filesystem::path& path)
     constexpr std::size_t kMost = std::size_t(64) << 20, kLongest = std::size_t(16) << 10; // [bytes] of all, of a line
     std::error_code       none;
     if (!std::filesystem::exists(path, none)) return {}; // format 1 had none
-    const std::string   whole = readWhole(path, kMost, "the markers of a session");
+    const std::string   whole = readWhole(path, kMost, "the markers of a session", Pipes::refused);
     std::vector<Marker> markers;
     std::string_view    rest = whole;
     for (std::size_t end; (end = rest.find('\n')) != std::string_view::npos; rest.remove_prefix(end + 1)) {
@@ -156,7 +156,7 @@ RecordedSession readDescription(const std::filesystem::path& folder)
         throw Error(folder.string() + ": expected the folder of a recorded session, found " +
                     (isFolder ? "no session.json in it; " : "a file; ") +
                     "palpate run --record makes one, and so does F5 in the window");
-    const std::string text   = readWhole(path, kMostOfDescription, "the description of a session");
+    const std::string text   = readWhole(path, kMostOfDescription, "the description of a session", Pipes::refused);
     const JsonObject  file   = JsonObject::parse(text, path.string());
     const int         format = file.has("format") ? file.wholeNumber("format", 1, std::numeric_limits<int>::max()) : 0;
     if (format < 1 || format > kSessionFormat)

@@ -1,10 +1,12 @@
 #include "engine/session/scene_held.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "engine/cloud/neighbour_index.h"
 #include "engine/core/contract.h"
 #include "engine/core/json_object.h"
 #include "engine/core/quantity.h"
@@ -71,6 +73,20 @@ constexpr std::string_view kRegion = R"({"type": "object", "additionalProperties
 "of the ball, or of those about the points [m]", "anyOf": [{"type": "number", "minimum": 1e-06, "maximum": 100}, {"type": "string"}]}}})";
 // clang-format on
 
+/// Sets the shares of the points that a region holds to 1.
+void hold(std::vector<double>& shares, std::span<const glm::dvec3> positions, const SceneHeld::Region& region)
+{
+    constexpr std::size_t         kMany = 32; // places from which on a search takes less time than looking at each
+    std::optional<NeighbourIndex> places;
+    if (!region.isBox && region.places.size() >= kMany) places.emplace(region.places);
+    for (std::size_t n = 0; n < positions.size(); ++n) {
+        const glm::dvec3& point = positions[n];
+        if (places ? glm::distance(region.places[places->nearest(point, 1)[0].point], point) <= region.radius
+                   : region.holds(point))
+            shares[n] = 1;
+    }
+}
+
 } // namespace
 
 bool SceneHeld::Region::holds(const glm::dvec3& point) const noexcept
@@ -128,8 +144,7 @@ std::vector<double> heldShares(std::span<const glm::dvec3> positions, const Scen
         throw Error(what + ": own: expected a property held of the points, from 0 to 1, found none; see palpate info");
     std::vector<double> shares(ofFile.begin(), ofFile.end());
     if (!held.isOwn) shares.assign(positions.size(), 0);
-    for (std::size_t n = 0; n < positions.size() && !held.isOwn; ++n)
-        shares[n] = std::ranges::any_of(held.regions, [&](const auto& region) { return region.holds(positions[n]); });
+    for (const SceneHeld::Region& region : held.regions) hold(shares, positions, region);
     constexpr double kHeld = 0.5;
     if (std::ranges::none_of(shares, [](double share) { return share > kHeld; }))
         throw Error(what + ": expected at least one point of the object in what holds it, found none of " +

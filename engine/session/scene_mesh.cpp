@@ -78,7 +78,7 @@ std::optional<ScatterPlan> scatterPlan(const Scene& scene, const LoadedCloud& lo
     plan.fingertip   = scene.patch.footprintRadius;
     if (!asked && isDenseEnough(size, plan.spacing, plan.fingertip)) return std::nullopt;
     plan.wanted   = scene.scatterDistance > 0 ? scene.scatterDistance : plan.fingertip / kScatteredPart;
-    plan.distance = std::max(plan.wanted, std::sqrt(plan.area / double(kMostMeshPoints)));
+    plan.distance = scatterDistance(loaded.cloud.positions(), loaded.faces, {.distance = plan.wanted});
     plan.points   = std::size_t(kDensity * plan.area / (plan.distance * plan.distance)) + 1;
     return plan;
 }
@@ -87,7 +87,8 @@ std::string scatterRefusal(const ScatterPlan& plan)
 {
     if (plan.distance <= std::max(plan.wanted, plan.fingertip)) return {};
     return "expected faces that " + std::to_string(kMostMeshPoints) +
-           " points can stand for, no farther apart than the fingertip's radius of " +
+           " points, fewer where triangles are long and thin, can stand for, no farther apart than the fingertip's "
+           "radius of " +
            formatQuantity(plan.fingertip, "m") + ", found " + formatQuantity(plan.distance, "m") +
            " between them; is length_unit right? scatter = off touches the vertices";
 }
@@ -119,7 +120,8 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
         report.warnings.push_back("points are scattered over the faces " + formatQuantity(points.distance, "m") +
                                   " apart instead of " + formatQuantity(plan.wanted, "m") + ", because no more than " +
                                   std::to_string(kMostMeshPoints) +
-                                  " are made; is the object as large as this, or its length unit another one?");
+                                  " are made, and fewer where triangles are long and thin; is the object as large as "
+                                  "this, or its length unit another one?");
     if (points.degenerate > 0)
         report.warnings.push_back(std::to_string(points.degenerate) + " of " + std::to_string(loaded.faces.size()) +
                                   " triangles have no area and hold no points");

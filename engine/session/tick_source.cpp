@@ -77,7 +77,7 @@ private:
 class RowsFile {
 public:
     RowsFile(const std::filesystem::path& path)
-        : name_(path.string()), in_(openForReading(path)), header_(readHeader(in_, name_)), bytes_(sizeOfFile(path))
+        : name_(path.string()), in_(openRegularFile(path)), header_(readHeader(in_, name_)), bytes_(sizeOfFile(path))
     {
     }
 

@@ -244,6 +244,38 @@ TEST_F(Files, AStrangersLinkInAFolderOfAnybodyIsRefused)
     EXPECT_EQ(contentsOf(folder_ / "mine"), "new") << "a link of our own may lie anywhere";
 }
 
+TEST_F(Files, AStrangersPipeInAFolderOfAnybodyIsRefused)
+{
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can make another user's pipe";
+    constexpr uid_t kStranger = 65534;
+    makeFolder(folder_ / "b");
+    const std::filesystem::path pipe = folder_ / "b" / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0666), 0);
+    ASSERT_EQ(::chmod((folder_ / "b").c_str(), 01777), 0);
+    const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+    ASSERT_GE(reader, 0);
+    const auto read = [&] {
+        char text[8]{};
+        return std::string(text, std::size_t(std::max<ssize_t>(::read(reader, text, sizeof text), 0)));
+    };
+    writeFileWhole(pipe, writeNew);
+    EXPECT_EQ(read(), "new") << "an own pipe is what was meant";
+    ASSERT_EQ(::lchown(pipe.c_str(), kStranger, kStranger), 0);
+    const std::string refusal = refusalOf([&] { writeFileWhole(pipe, writeNew); });
+    EXPECT_NE(refusal.find("a pipe that another user put"), std::string::npos) << refusal;
+    EXPECT_EQ(read(), "");
+    ::close(reader);
+    EXPECT_NE(refusalOf([&] { writeFileWhole(pipe, writeNew); }), "") << "nor is a reader waited for";
+}
+
+TEST_F(Files, APipeWhereNobodyMeansOneIsRefusedAndNotWaitedFor)
+{
+    ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0666), 0);
+    const std::string refusal =
+        refusalOf([&] { static_cast<void>(readWhole(folder_ / "pipe", 10, "a text", Pipes::refused)); });
+    EXPECT_NE(refusal.find("found a pipe"), std::string::npos) << refusal;
+}
+
 TEST_F(Files, AFileForOneUsersEyesStaysSo)
 {
     std::ofstream(folder_ / "a") << "old";

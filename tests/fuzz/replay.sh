@@ -6,7 +6,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 sh "$here/make_seeds.sh" "$2"
 cd "$2/.."
 "$1" "$2" "$here/found"
-if ! command -v python3 >/dev/null 2>&1; then echo 'times: not measured, there is no python3'; exit; fi
+if ! command -v python3 >/dev/null 2>&1; then echo 'skipped: times of long inputs, there is no python3'; exit; fi
 python3 "$here/make_long.py" "$2/../short" 1000
 python3 "$here/make_long.py" "$2/../long" 16000
 exec "$1" --linear "$2/../short" "$2/../long"

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Checks what the Debian packages hold and say. Argument: their folder.
 set -eu
+hardening=$(cd "$(dirname "$0")/.." && pwd)/hardening.sh
 cd "$1"
 failed=0
 complain() { echo "$*"; failed=1; }
@@ -44,6 +45,14 @@ needs Architecture all
 holds python3/dist-packages/palpate/__init__.py python3/dist-packages/palpate/py.typed
 # What Python compiles at the first import would stay behind when the package is removed.
 dpkg-deb -I "$package" prerm | grep -q py3clean || complain "$package leaves what Python compiled"
+
+rm -rf unpacked
+for package in *.deb; do dpkg-deb -x "$package" unpacked; done
+programs=$(find unpacked -type f \( -path '*/bin/*' -o -name '*guardian' -o -name '*.so.*' \))
+[ "$(echo "$programs" | wc -l)" -ge 3 ] || complain "expected a program, its guardian and a library, found only $programs"
+# shellcheck disable=SC2086 # their names have no blanks
+sh "$hardening" $programs || failed=1
+rm -rf unpacked
 
 versions=$(for package in *.deb; do field Version; done | sort -u)
 [ "$(echo "$versions" | wc -l)" -eq 1 ] || complain "versions differ: $versions"

@@ -380,6 +380,9 @@ TEST(Recording, AKillCostsAtMostTenMilliseconds)
     // On a machine that is busy with other work the writer may be scheduled late once or twice; the median may not.
     EXPECT_LE(at(0.5), 10) << all.str();
     EXPECT_LE(at(0.75), 10) << all.str();
+    if (rounds < 100) return;
+    EXPECT_LE(at(0.99), 10) << all.str();
+    EXPECT_LE(at(1), 100) << all.str();
 }
 
 /// A recording of a hundred ticks, all of them on the disk.

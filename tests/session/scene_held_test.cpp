@@ -64,6 +64,23 @@ TEST(Held, IsWrittenAsItIsRead)
     EXPECT_FALSE(haveSameCloud(sceneWith(file, R"("own")"), sceneWith(file, R"({"ball": [0, 0, 0], "radius": 1})")));
 }
 
+TEST(Held, OfManyPlacesEachHoldsWhatIsNear)
+{
+    const TemporaryFolder folder;
+    const auto            file = folder.write("strip.csv", kRows);
+    std::string           few, many; // the same places, some of them often
+    for (int n = 0; n < 40; ++n) {
+        const std::string place = "[" + std::to_string(0.001 * (n % 8)) + ", 0.002, 0]";
+        if (n < 8) few += (few.empty() ? "" : ", ") + place;
+        many += (many.empty() ? "" : ", ") + place;
+    }
+    const auto held = [&](const std::string& places) {
+        return heldOf(sceneWith(file, R"({"radius": 0.0031, "points": [)" + places + "]}"));
+    };
+    EXPECT_EQ(held(many), held(few));
+    EXPECT_GT(held(few), 50);
+}
+
 TEST(Held, MistakesAreNamed)
 {
     const TemporaryFolder folder;

@@ -89,7 +89,7 @@ EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformati
         helper.watch(servo, device);
         if (recording) recording->push(record);
 
-        report.wrong = invariants.check(record, given, dt, servo);
+        report.wrong = invariants.check(record, given, dt, servo.governor().settings());
         if (!report.wrong) report.wrong = invariants.checkTable(servo.tableInUse(), n % 32 == 0);
         ++report.ticks;
     }

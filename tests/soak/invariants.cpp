@@ -47,11 +47,10 @@ std::uint64_t sumOf(const ComplianceTable& table)
 } // namespace
 
 std::optional<std::string> Invariants::check(const TickRecord& record, const GovernedForce& given, double dt,
-                                             const Servo& servo)
+                                             const GovernorSettings& limits)
 {
-    const GovernorSettings& limits = servo.governor().settings();
-    const bool              runs   = dt > 0 && std::isfinite(dt);
-    const double            rise = runs ? std::min(dt, limits.longestTick) : 0, fall = runs ? dt : limits.nominalPeriod;
+    const bool   runs = dt > 0 && std::isfinite(dt);
+    const double rise = runs ? std::min(dt, limits.longestTick) : 0, fall = runs ? dt : limits.nominalPeriod;
 
     auto wrong = checkForce(record, given);
     if (!wrong) wrong = checkChange(record, rise, fall, limits);
@@ -140,6 +139,7 @@ std::optional<std::string> Invariants::checkSilence(const TickRecord& record) co
 void Invariants::handsOver(const ComplianceTable& table)
 {
     sums_[table.sequence % kNoted] = sumOf(table);
+    handed_                        = std::max<std::uint64_t>(handed_, table.sequence);
 }
 
 std::optional<std::string> Invariants::checkTable(const ComplianceTable* inUse, bool whole)
@@ -150,7 +150,7 @@ std::optional<std::string> Invariants::checkTable(const ComplianceTable* inUse, 
         wrong << "table " << inUse->sequence << " is used after table " << newest_;
     else if (!inUse->usable())
         wrong << "table " << inUse->sequence << " is used and not usable";
-    else if (whole && newest_ + kNoted > inUse->sequence && sums_[inUse->sequence % kNoted] != sumOf(*inUse))
+    else if (whole && inUse->sequence + kNoted > handed_ && sums_[inUse->sequence % kNoted] != sumOf(*inUse))
         wrong << "table " << inUse->sequence << " was changed while it was in use";
     newest_ = inUse->sequence;
     if (wrong.str().empty()) return {};

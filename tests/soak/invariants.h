@@ -19,7 +19,7 @@ public:
     /// \param dt     [s] as the servo was told
     /// \return what is wrong, as a sentence; empty if nothing is
     [[nodiscard]] std::optional<std::string> check(const TickRecord& record, const GovernedForce& given, double dt,
-                                                   const Servo& servo);
+                                                   const GovernorSettings& limits);
 
     /// Checks the table that the servo uses: it is usable and never an older one; and, if asked to, that it is the one that
     /// was handed over, unchanged, which takes as long as a tick.
@@ -49,6 +49,7 @@ private:
     double        faulty_   = 0;  ///< [s] since the governor latched a fault
     int           away_     = 0;  ///< ticks since the last contact
     std::uint64_t newest_   = 0;  ///< number of the newest table in use
+    std::uint64_t handed_   = 0;  ///< of the newest one that was handed over
     std::uint64_t pressing_ = 0;
     std::uint64_t sums_[kNoted]{}; ///< of tables by their number
 };

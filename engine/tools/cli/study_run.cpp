@@ -348,7 +348,7 @@ TrialRow Sitting::trial(std::size_t number)
 Json readStudyFile(const std::filesystem::path& participantFolder)
 {
     const std::filesystem::path path = participantFolder / kStudyFile;
-    const std::string           text = readWhole(path, kLargestFile, "a study's description");
+    const std::string           text = readWhole(path, kLargestFile, "a study's description", Pipes::refused);
     const Json                  file = tooDeepAt(text) ? Json() : Json::parse(text, nullptr, false);
     const bool                  good = file.is_object() && file.value("format", Json()) == 1 && file.contains("plan") &&
                       file["plan"].is_string() && file.contains("participant") && file.contains("clouds");

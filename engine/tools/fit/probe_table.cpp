@@ -9,6 +9,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 
 namespace palp::fit {
 namespace {
@@ -16,6 +17,9 @@ namespace {
 constexpr std::size_t kLargestFile = std::size_t(256) << 20; // [bytes]
 constexpr std::size_t kMostProbes  = 10'000;                 // a survey has hundreds; each takes some 400 bytes
 constexpr double      kDeepest     = 0.1;                    // [m] no probe goes deeper: such numbers are millimetres
+constexpr double      kShallowest  = 1e-9;                   // [m] any probe goes deeper
+constexpr double      kWeakest     = 1e-9;                   // [N] any probe pushes harder
+constexpr double      kLongest     = 1e6;                    // [s] two weeks
 constexpr double      kStrongest   = 1e3;                    // [N] no probe pushes harder: such numbers are mN
 
 enum Column : std::size_t { kDepth, kForce, kTime, kX, kY, kZ, kNx, kNy, kNz, kColumns };
@@ -147,7 +151,9 @@ void checkForces(const Draft& draft, const std::string& name)
         throw Error(opening(draft, name, row) + "expected a force of at most " + formatQuantity(kStrongest, "N") +
                     ", found " + formatQuantity(*strongest, "N") +
                     "; if these are millinewtons, call the column \"force [mN]\"");
-    if (!(*strongest > 0)) throw Error(opening(draft, name, row) + "expected a force above zero, found none");
+    if (!(*strongest > kWeakest))
+        throw Error(opening(draft, name, row) + "expected a force above " + formatQuantity(kWeakest, "N") +
+                    ", found none");
 }
 
 void checkDepths(const Draft& draft, const std::string& name)
@@ -168,12 +174,15 @@ void checkDepths(const Draft& draft, const std::string& name)
             throw Error(opening(draft, name, n) + "expected depths that rise from row to row, found " +
                         formatQuantity(p.depth[n], "m") + " after " + formatQuantity(p.depth[n - 1], "m") +
                         "; sort the rows, or add a column \"time\" if the probe also went back");
+        if (!p.time.empty() && p.time[n] - p.time[0] > kLongest)
+            throw Error(opening(draft, name, n) + "expected times over " + formatQuantity(kLongest, "s") +
+                        " at most, found " + formatQuantity(p.time[n] - p.time[0], "s"));
         if (!p.time.empty() && !(p.time[n] > p.time[n - 1]))
             throw Error(opening(draft, name, n) + "expected times that rise from row to row, found " +
                         formatQuantity(p.time[n], "s") + " after " + formatQuantity(p.time[n - 1], "s"));
     }
     const double least = *std::ranges::min_element(p.depth);
-    if (!(p.deepest() > least) && !(p.deepest() > 0 && !p.time.empty()))
+    if (!(p.deepest() - least > kShallowest) && !(p.deepest() > kShallowest && !p.time.empty()))
         throw Error(opening(draft, name, 0) + "expected depths that differ, found " + formatQuantity(least, "m") +
                     " in every row");
 }
@@ -243,7 +252,7 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
             throw Error(where() + ": expected at least " + std::to_string(header->width()) + " numbers, found " +
                         std::to_string(cells.size()));
         const std::string called =
-            header->probe() && *header->probe() < cells.size() ? std::string(cells[*header->probe()]) : "1";
+            header->probe() && *header->probe() < cells.size() ? shownText(cells[*header->probe()]) : "1";
         const auto [at, fresh] = known.try_emplace(called, drafts.size());
         if (fresh) {
             if (drafts.size() == kMostProbes)

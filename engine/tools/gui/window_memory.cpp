@@ -29,7 +29,7 @@ std::filesystem::path fileOf()
 nlohmann::json remembered()
 try {
     constexpr std::size_t kLargest = 1 << 20; // [bytes]
-    const std::string     text     = readWhole(fileOf(), kLargest, "what windows remember");
+    const std::string     text     = readWhole(fileOf(), kLargest, "what windows remember", Pipes::refused);
     auto                  read     = tooDeepAt(text) ? nlohmann::json() : nlohmann::json::parse(text, nullptr, false);
     return read.is_object() ? read : nlohmann::json::object();
 } catch (const Error&) {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/core/contract.h"
+#include "engine/core/shown_text.h"
 #include "engine/core/uniform.h"
 #include "engine/perception/perception.h"
 #include "engine/tools/plot/colour_map.h"
@@ -138,10 +139,10 @@ std::vector<AnswerSummary> analyse(const std::vector<TrialRow>& rows, const Stif
         const auto [place, isNew] = places.try_emplace({row.task, what}, groups.size());
         if (isNew) {
             Group& group           = groups.emplace_back();
-            group.summary.task     = row.task;
+            group.summary.task     = shownText(row.task); // it is printed, and stands in a drawing
             group.summary.kind     = row.kind;
-            group.summary.question = row.question;
-            group.summary.what     = what;
+            group.summary.question = shownText(row.question);
+            group.summary.what     = shownText(what);
             group.first            = row.first;
             group.second           = row.second;
         }

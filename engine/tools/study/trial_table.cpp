@@ -165,7 +165,7 @@ void demandSense(const TrialRow& row, std::size_t trial, const std::string& wher
 /// Returns all whole lines of a table.
 std::string wholeLines(const std::filesystem::path& file)
 {
-    std::string text = readWhole(file, kLargestFile, "a table of trials of at most 64 MiB");
+    std::string text = readWhole(file, kLargestFile, "a table of trials of at most 64 MiB", Pipes::refused);
     text.resize(text.rfind('\n') + 1); // npos + 1 is 0
     return text;
 }

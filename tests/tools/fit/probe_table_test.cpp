@@ -60,6 +60,17 @@ TEST(ProbeTable, WithoutNamesAllRowsAreOneProbeAndWithTimesItMayGoBack)
     EXPECT_EQ(probes[0].forceRange(), 1);
 }
 
+TEST(ProbeTable, WhatNoProbeMeasuresIsRefusedAndANameIsShownAsATerminalMayHaveIt)
+{
+    EXPECT_TRUE(says("depth,force\n1e-320,1\n2e-320,1\n3e-320,1\n4e-320,1\n5e-320,1\n", {"depths that differ"}));
+    EXPECT_TRUE(
+        says("depth [mm],force\n1,1e-310\n2,2e-310\n3,3e-310\n4,4e-310\n5,5e-310\n", {"a force above 1.00 nN"}));
+    EXPECT_TRUE(says("depth [mm],force,time\n0,0,0\n1,1,1\n2,1,2\n2,1,3\n2,1,1e300\n", {"line 6", "times over 1"}));
+    const auto probes = parseProbes(
+        "depth,force,probe\n0,0,\x1b[31m\n.01,1,\x1b[31m\n.02,2,\x1b[31m\n.03,3,\x1b[31m\n.04,4,\x1b[31m\n", "p");
+    EXPECT_EQ(probes[0].name, "?[31m");
+}
+
 TEST(ProbeTable, ANameForEachRowIsRefused)
 {
     std::string text = "probe,depth,force\n";
@@ -80,7 +91,7 @@ TEST(ProbeTable, EachMistakeIsOneSentenceWithItsLineAndARemedy)
         says("depth [mm],force\n-1,0\n1,0.1\n2,0.3\n3,0.6\n4,1\n", {"line 2", "depth of 0 or more", "-1.00 mm"}));
     EXPECT_TRUE(says("depth [mm],force,time\n0,0,0\n1,1,1\n1,1,1\n1,1,2\n1,1,3\n", {"line 4", "times that rise"}));
     EXPECT_TRUE(says("depth [mm],force\n1,1\n1,1\n1,1\n1,1\n1,1\n", {"depths that differ"}));
-    EXPECT_TRUE(says("depth [mm],force\n0,0\n1,0\n2,0\n3,0\n4,0\n", {"force above zero"}));
+    EXPECT_TRUE(says("depth [mm],force\n0,0\n1,0\n2,0\n3,0\n4,0\n", {"a force above 1.00 nN"}));
     EXPECT_TRUE(says("depth [furlong],force\n" + kRising, {"line 1", "\"depth\"", "furlong", "mm"}));
     EXPECT_TRUE(says("deep,force\n" + kRising, {"column \"depth\"", "deep,force"}));
     EXPECT_TRUE(says("depth,depth,force\n", {"one column \"depth\", found two"}));

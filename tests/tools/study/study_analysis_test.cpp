@@ -97,6 +97,15 @@ TEST(Analysis, PairsInEitherOrderAreOneAndThePredictionStandsBeside)
     EXPECT_FALSE(analyse(rows, {{"soft", 400}})[0].predicted);
 }
 
+TEST(Analysis, WhatATableSaysIsShownAsATerminalMayHaveIt)
+{
+    TrialRow row         = rowOf("p", "rating", "\x1b[31mred", "4");
+    row.task             = row.first;
+    const auto summaries = analyse({row}, {});
+    EXPECT_EQ(summaries[0].task, "?[31mred");
+    EXPECT_EQ(summaries[0].what, "?[31mred");
+}
+
 TEST(Analysis, YesAndRightAreCountedApart)
 {
     const auto all = analyse({rowOf("P01", "yes-no", "even", "yes", false), rowOf("P02", "yes-no", "even", "no", true),
