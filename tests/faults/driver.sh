@@ -10,7 +10,8 @@ set -u
 palpate=$1 layer=$2 instants=${PALPATE_INSTANTS:-4}
 unset PALPATE_INSTANTS # it is no key of a scene
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+server=
+trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
 cd "$work" || exit 1
 passed=0 failed=0
 pass() { passed=$((passed + 1)); }
@@ -21,6 +22,7 @@ arguments() { # of a command
     case $1 in
     touch) echo 'touch sample:sheet --points 2000 --cells 16 --solver lavapipe --json' ;;
     run) echo 'run sample:sheet --points 2000 --cells 16 --solver lavapipe --clock virtual --seconds 0.4 --json --record recorded' ;;
+    view) echo 'view sample:sheet --points 2000 --cells 16 --size 400x320 --solver lavapipe --draw-on lavapipe --hand press --seconds 1.5' ;;
     render) echo 'render sample:sheet --points 2000 --cells 16 --size 120x90 --solver host --draw-on lavapipe --out picture.png' ;;
     esac
 }
@@ -64,8 +66,22 @@ attempt() {
     judge "$1" "$1, $2 at call $3" $?
 }
 
+# A window needs a display; its session is in real time, so that a call is another one each time.
+commands='touch run render' XDG_CONFIG_HOME=$work/config
+export XDG_CONFIG_HOME
+if ! command -v Xvfb >/dev/null 2>&1; then
+    echo 'skipped: a window whose driver fails, there is no Xvfb'
+elif ! env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" view 2>&1 </dev/null | grep -q 'made without GLFW'; then
+    mkfifo number
+    Xvfb -displayfd 3 -noreset -screen 0 800x600x24 3>number 2>/dev/null &
+    server=$!
+    read -r display <number
+    DISPLAY=:$display commands="$commands view"
+    export DISPLAY
+fi
+
 felt=
-for command in touch run render; do
+for command in $commands; do
     # shellcheck disable=SC2046
     "$palpate" $(arguments $command) >out.txt 2>err.txt || { cat err.txt; exit 1; }
     calls=$(cat count)
@@ -75,6 +91,7 @@ for command in touch run render; do
     for as in memory lost hang; do
         most=$instants n=0
         [ "$most" -gt 0 ] || most=$calls
+        [ $command != view ] || [ "$most" -le 300 ] || most=300 # of the thousands of a window's pictures
         while [ $n -lt "$most" ]; do # in equal shares of the calls, at another place of each for each way
             attempt $command $as "$(awk -v n=$n -v most="$most" -v calls="$calls" -v as=$as 'BEGIN { srand(length(as)); print most == calls ? n + 1 : int((n + rand()) * calls / most) + 1 }')"
             n=$((n + 1))
@@ -88,6 +105,15 @@ for call in vkAllocateMemory vkMapMemory vkBindBufferMemory vkResetFences vkQueu
     FAILING_LAYER_ONLY=$call attempt touch memory 3
     grep -q 'the host took over' err.txt && pass || complain "touch, $call: the host did not take over: $(cat err.txt)"
 done
+
+# And to what a window makes for its pictures: it went on without images that could not be made, and asked for panels twice.
+case $commands in
+*view*)
+    for call in vkCreateImage vkCreateSampler vkCreateDescriptorSetLayout vkCreateFramebuffer vkCreateBuffer vkCreateSwapchainKHR; do
+        for at in 1 2; do FAILING_LAYER_ONLY=$call attempt view memory $at; done
+    done
+    ;;
+esac
 
 echo "$passed checks passed, $failed failed"
 [ $failed -eq 0 ]

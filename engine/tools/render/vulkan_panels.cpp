@@ -31,14 +31,24 @@ VulkanPanels::VulkanPanels(compute::VulkanContext& context, VkRenderPass pass) :
     VkDescriptorPool pool  = VK_NULL_HANDLE;
     check(vkCreateDescriptorPool(context.device, &poolInfo, nullptr, &pool), "make a descriptor pool");
     sets_ = {context, pool};
+    try {
+        start(pass);
+        uploadFont();
+    } catch (...) {
+        stop(); // ImGui takes no second back end beside one that has begun to start
+        throw;
+    }
+}
 
+void VulkanPanels::start(VkRenderPass pass)
+{
     ImGui_ImplVulkan_InitInfo info{};
-    info.Instance        = context.instance->get();
-    info.PhysicalDevice  = context.physical;
-    info.Device          = context.device;
-    info.QueueFamily     = context.family;
-    info.Queue           = context.queue;
-    info.DescriptorPool  = pool;
+    info.Instance        = context_.instance->get();
+    info.PhysicalDevice  = context_.physical;
+    info.Device          = context_.device;
+    info.QueueFamily     = context_.family;
+    info.Queue           = context_.queue;
+    info.DescriptorPool  = sets_.get();
     info.MinImageCount   = kFrames;
     info.ImageCount      = kFrames;
     info.MSAASamples     = VK_SAMPLE_COUNT_1_BIT;
@@ -50,7 +60,6 @@ VulkanPanels::VulkanPanels(compute::VulkanContext& context, VkRenderPass pass) :
     const bool started        = ImGui_ImplVulkan_Init(&info, pass);
 #endif
     PALP_EXPECT(started, "ImGui's back end starts");
-    uploadFont();
 }
 
 void VulkanPanels::uploadFont()
@@ -80,9 +89,19 @@ void VulkanPanels::uploadFont()
 #endif
 }
 
+void VulkanPanels::stop()
+{
+    ImGuiIO& io = ImGui::GetIO();
+    if (!io.BackendRendererUserData) return;
+    if (!context_.atWork()) return ImGui_ImplVulkan_Shutdown();
+    // A driver that never finished uses what would be freed: it is left behind, and ImGui forgets it.
+    io.BackendRendererUserData = nullptr;
+    io.BackendRendererName     = nullptr;
+}
+
 VulkanPanels::~VulkanPanels()
 {
-    if (!context_.atWork()) ImGui_ImplVulkan_Shutdown();
+    stop();
 }
 
 // The back end sets the number of the texture, and building a font takes it away. Later ones follow the font

@@ -29,7 +29,9 @@ public:
     [[nodiscard]] static bool fontHasChanged();
 
 private:
+    void start(VkRenderPass pass);
     void uploadFont();
+    void stop();
 
     compute::VulkanContext&                                   context_;
     compute::Owned<VkDescriptorPool, vkDestroyDescriptorPool> sets_;

@@ -209,9 +209,14 @@ void VulkanSurface::fit(VkExtent2D size)
     freshPanels_ = panels_ != nullptr; // into the new image
     for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &panelStep_, &lightStep_})
         step->framebuffer = {};
-    makeImages();
-    makeFramebuffers();
-    pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, compute::Intent::readback);
+    try {
+        makeImages();
+        makeFramebuffers();
+        pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, compute::Intent::readback);
+    } catch (...) {
+        size_ = {}; // the next picture makes what is missing
+        throw;
+    }
 }
 
 namespace {
