@@ -1,11 +1,14 @@
 #!/bin/sh
 # Faults of the machine, command by command: a disk that is full after some bytes, a folder that cannot be written, few
-# file handles, and standard streams that are closed. Arguments: the program, the build's sanitizers, and the scene of a hunt.
+# file handles, each single call that changes a file, and standard streams that are closed. Arguments: the program, the build's
+# sanitizers, the scene of a hunt, and the library of failing_files.cpp. PALPATE_INSTANTS says how many calls of each command fail
+# in each way (3); 0 means each.
 #
 # Expected each time: exit 0 with everything there, or exit 2 with a sentence; an older file as it was; no part of a file. Sanitizers need
 # handles of their own, so that part is omitted with them.
 set -u
-palpate=$1 sanitizers=${2:-} hunt=$3
+palpate=$1 sanitizers=${2:-} hunt=$3 failing_files=$4 instants=${PALPATE_INSTANTS:-3}
+unset PALPATE_INSTANTS # it is no key of a scene
 work=$(mktemp -d)
 trap 'umount "$work/small" "$work/locked" 2>/dev/null; rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -68,6 +71,7 @@ judge() {
         complain "$1: exit 0, and nothing is there"
         return
     fi
+    if [ "$4" -eq 0 ] && [ -f "$3/$2" ] && [ "$(head -c 30 "$3/$2" | tr -d '\000')" = 'what was there before' ]; then complain "$1: exit 0, and what was there before is there still"; return; fi
     pass
 }
 
@@ -96,6 +100,29 @@ every() {
 mkdir limited
 for blocks in 1 64; do every "ulimit -f $blocks" limited; done # of 512 bytes; with 0 nothing could be said into a file
 [ -n "$sanitizers" ] || for handles in 4 8; do every "ulimit -n $handles" limited; done
+
+# Each call that changes a file fails, alone or with all that follow. The loader's variable is set for the program only.
+every_call() {
+    # shellcheck disable=SC2034 # by eval
+    preload="export LD_PRELOAD='$failing_files'"
+    commands | while read -r name output arguments; do
+        arguments=$(printf '%s' "$arguments" | sed "s|WHERE|limited|g; s|;| |g")
+        [ "$name" != paint ] || arguments=$(printf '%s' "$arguments" | sed 's|--stroke \(.*\) --out|--stroke "\1" --out|')
+        again() { rm -rf "limited/${output:?}"; eval "attempt $name $output limited \"$1; \$preload\" $arguments" <keys; }
+        again "export FAILING_FILES_COUNT=$work/calls"
+        calls=$(cat calls) most=$instants n=0
+        [ "$calls" -gt 0 ] || complain "$name changes no file: are its calls counted?"
+        [ "$most" -gt 0 ] && [ "$most" -lt "$calls" ] || most=$calls
+        while [ $n -lt "$most" ]; do
+            for as in AT ONCE; do again "export FAILING_FILES_$as=$((n * calls / most + 1))"; done
+            n=$((n + 1))
+        done
+        rm -rf "limited/${output:?}"
+        echo "$passed $failed" >counts
+    done
+    read -r passed failed <counts
+}
+[ -n "$sanitizers" ] || every_call
 
 mkdir small locked
 if mount -t tmpfs -o size=64k none small 2>/dev/null; then

@@ -1,0 +1,116 @@
+// Calls on files that fail, for whole programs: loaded before the C library (LD_PRELOAD), it counts what changes files and
+// folders (writes to regular files, syncs, names, lengths) and fails
+//
+//     FAILING_FILES_AT=n        the n-th such call, counted from 1, and all later ones: a disk that is full
+//     FAILING_FILES_ONCE=n      the n-th alone: a disk that has an error
+//     FAILING_FILES_COUNT=FILE  how many there were so far
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace {
+
+std::atomic<long> counted{0};
+
+long setting(const char* name)
+{
+    const char* const text = std::getenv(name);
+    return text ? std::atol(text) : 0;
+}
+
+template <class Function>
+Function* next(const char* name)
+{
+    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+/// Writes how many calls there were, after each: a program may end without its destructors.
+void report(long calls)
+{
+    static const auto        real = next<ssize_t(int, const void*, size_t, off_t)>("pwrite");
+    static const char* const path = std::getenv("FAILING_FILES_COUNT");
+    static const int         file = path ? ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644) : -1;
+    char                     text[24];
+    const int                size = std::snprintf(text, sizeof text, "%ld\n", calls);
+    if (file >= 0) static_cast<void>(real(file, text, size_t(size), 0) == size);
+}
+
+/// Counts a call, and returns whether it fails; errno says why.
+bool fails()
+{
+    static const long at = setting("FAILING_FILES_AT"), once = setting("FAILING_FILES_ONCE");
+    const long        n = ++counted;
+    report(n);
+    if (at > 0 && n >= at) errno = ENOSPC;
+    if (once > 0 && n == once) errno = EIO;
+    return (at > 0 && n >= at) || (once > 0 && n == once);
+}
+
+/// What a program says to a terminal or a pipe is not meant, nor what it is started with writes to.
+bool isFile(int handle)
+{
+    struct stat found {};
+    return handle > 2 && ::fstat(handle, &found) == 0 && S_ISREG(found.st_mode);
+}
+
+} // namespace
+
+// NOLINTBEGIN: names and forms are the C library's
+extern "C" {
+
+ssize_t write(int handle, const void* bytes, size_t count)
+{
+    static const auto real = next<ssize_t(int, const void*, size_t)>("write");
+    return isFile(handle) && fails() ? -1 : real(handle, bytes, count);
+}
+
+ssize_t pwrite(int handle, const void* bytes, size_t count, off_t at)
+{
+    static const auto real = next<ssize_t(int, const void*, size_t, off_t)>("pwrite");
+    return isFile(handle) && fails() ? -1 : real(handle, bytes, count, at);
+}
+
+ssize_t pwrite64(int handle, const void* bytes, size_t count, off64_t at)
+{
+    static const auto real = next<ssize_t(int, const void*, size_t, off64_t)>("pwrite64");
+    return isFile(handle) && fails() ? -1 : real(handle, bytes, count, at);
+}
+
+int fsync(int handle)
+{
+    static const auto real = next<int(int)>("fsync");
+    return isFile(handle) && fails() ? -1 : real(handle);
+}
+
+int fdatasync(int handle)
+{
+    static const auto real = next<int(int)>("fdatasync");
+    return isFile(handle) && fails() ? -1 : real(handle);
+}
+
+int rename(const char* from, const char* to) noexcept
+{
+    static const auto real = next<int(const char*, const char*)>("rename");
+    return fails() ? -1 : real(from, to);
+}
+
+int linkat(int a, const char* from, int b, const char* to, int flags) noexcept
+{
+    static const auto real = next<int(int, const char*, int, const char*, int)>("linkat");
+    return fails() ? -1 : real(a, from, b, to, flags);
+}
+
+int mkdir(const char* path, mode_t mode) noexcept
+{
+    static const auto real = next<int(const char*, mode_t)>("mkdir");
+    return fails() ? -1 : real(path, mode);
+}
+
+} // extern "C"
+// NOLINTEND
