@@ -34,9 +34,12 @@ step() {
         result="skipped: $reason"
     else
         say "== $name"
+        mkdir -p "$top"
         log=$top/release_gate_step.log
+        rm -f "$log.status"
         { ("$@"); echo $? >"$log.status"; } 2>&1 | tee "$log"
-        status=$(cat "$log.status")
+        status=$(cat "$log.status" 2>/dev/null)
+        case $status in '' | *[!0-9]*) status=1 ;; esac # it was killed, or the disk is full
         # Tests that do not apply to this machine are counted; scripts that it cannot run, whole or in part, make a gap.
         left_out=$(grep -c '(Skipped)$' "$log") gaps=$(grep -cE '^skipped: |^[[:space:]]*[0-9]+ - [a-z_]+ \(Skipped\)$' "$log")
         if [ "$status" -eq 77 ]; then

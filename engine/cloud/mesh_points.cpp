@@ -33,7 +33,7 @@ constexpr double kLeastDistance = 0x1p-20;
 
 /// Most distances in a row along the longest edges of thin triangles: over `most`, or for each triangle of the mesh [1]. Each
 /// costs some 500 looks, a point of triangles of usual shapes 33: of those the area is the bound.
-constexpr double kMostAlongThin = 0.02, kAlongEach = 50;
+constexpr double kMostAlongThin = 0.2, kAlongEach = 50;
 
 /// Area of a triangle over its longest edge times the distance from which on it is none of the thin ones [1].
 constexpr double kThin = 1.0 / 3;

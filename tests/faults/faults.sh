@@ -109,8 +109,9 @@ every_call() {
         arguments=$(printf '%s' "$arguments" | sed "s|WHERE|limited|g; s|;| |g")
         [ "$name" != paint ] || arguments=$(printf '%s' "$arguments" | sed 's|--stroke \(.*\) --out|--stroke "\1" --out|')
         again() { rm -rf "limited/${output:?}"; eval "attempt $name $output limited \"$1; \$preload\" $arguments" <keys; }
+        rm -f calls
         again "export FAILING_FILES_COUNT=$work/calls"
-        calls=$(cat calls) most=$instants n=0
+        calls=$(cat calls 2>/dev/null || echo 0) most=$instants n=0
         [ "$calls" -gt 0 ] || complain "$name changes no file: are its calls counted?"
         [ "$most" -gt 0 ] && [ "$most" -lt "$calls" ] || most=$calls
         while [ $n -lt "$most" ]; do

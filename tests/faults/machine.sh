@@ -37,7 +37,7 @@ steps() {
 }
 
 if [ -n "$sanitizers" ]; then
-    skip 'jumping clocks and limits of threads, with sanitizers'
+    echo 'left out: jumping clocks and limits of threads, which sanitizers take no part in'
 else
     # The clock on the wall is set: nothing happens. Half a second is the most that a busy machine may take a tick.
     for by in -86400 31536000; do
