@@ -31,8 +31,9 @@ constexpr double kOpposite = -0.5, kOneSheet = 0.02;
 /// Least distance over the diagonal of the mesh [1], so that the numbers of cells fit into 20 bits.
 constexpr double kLeastDistance = 0x1p-20;
 
-/// Most distances in a row along the longest edges of thin triangles: over `most`, or for each triangle of the mesh [1]. Each
-/// costs some 500 looks, a point of triangles of usual shapes 33: of those the area is the bound.
+/// Most distances in a row along the longest edges of thin triangles: over `most`, or for each triangle of the mesh [1]. On a
+/// fine tube they cost as much as points do, on slivers that lie one on the other ten times as much: half a minute in all, as
+/// long as the most points take.
 constexpr double kMostAlongThin = 0.2, kAlongEach = 50;
 
 /// Area of a triangle over its longest edge times the distance from which on it is none of the thin ones [1].
@@ -248,26 +249,19 @@ Surface surfaceOf(std::span<const glm::dvec3> vertices, std::span<const Triangle
     return surface;
 }
 
-/// Returns how many distances there are in a row along the triangles that are longer than it and much thinner [1].
-double distancesAlongThin(const Surface& surface, double distance)
-{
-    double all = 0;
-    for (const std::uint32_t face : surface.order) {
-        const Facet facet = surface.facet(face);
-        if (facet.longest > distance)
-            all += std::max(0.0, facet.longest / distance - facet.area / (kThin * distance * distance));
-    }
-    return all;
-}
-
-/// Returns the distance that keeps the number of points in bounds [m], and the time.
+/// Returns the distance that keeps the number of points in bounds [m], and the time: the sum of the long sides of thin
+/// triangles, less what their area pays for, is so many distances at most.
 double boundedDistance(const Surface& surface, const ScatterSettings& settings)
 {
-    double distance   = std::max(settings.distance, kLeastDistance * glm::length(surface.high - surface.low));
-    distance          = std::max(distance, std::sqrt(surface.area / double(settings.most)));
+    double distance = std::max(settings.distance, kLeastDistance * glm::length(surface.high - surface.low));
+    distance        = std::max(distance, std::sqrt(surface.area / double(settings.most)));
+    double thin     = 0; // [m]
+    for (const std::uint32_t face : surface.order) {
+        const Facet facet = surface.facet(face);
+        if (facet.longest > distance) thin += std::max(0.0, facet.longest - facet.area / (kThin * distance));
+    }
     const double most = std::max(kMostAlongThin * double(settings.most), kAlongEach * double(surface.order.size()));
-    while (distancesAlongThin(surface, distance) > most) distance *= 1.25;
-    return distance;
+    return std::max(distance, thin / most);
 }
 
 /// A part of a triangle, by the weights of its corners.

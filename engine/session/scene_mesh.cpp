@@ -87,7 +87,7 @@ std::string scatterRefusal(const ScatterPlan& plan)
 {
     if (plan.distance <= std::max(plan.wanted, plan.fingertip)) return {};
     return "expected faces that " + std::to_string(kMostMeshPoints) +
-           " points, fewer where triangles are long and thin, can stand for, no farther apart than the fingertip's "
+           " points can stand for (fewer where triangles are long and thin), no farther apart than the fingertip's "
            "radius of " +
            formatQuantity(plan.fingertip, "m") + ", found " + formatQuantity(plan.distance, "m") +
            " between them; is length_unit right? scatter = off touches the vertices";

@@ -213,7 +213,8 @@ TEST(MeshPoints, AFewLongSliversAreNoWorkOfHours)
         return vertices;
     };
     constexpr ScatterSettings kAsked{.distance = 1e-3, .most = 100'000};
-    EXPECT_EQ(scatterDistance(sliversOf(0.05), faces, kAsked), 1e-3); // 98 x 50
+    EXPECT_EQ(scatterDistance(sliversOf(0.2), faces, kAsked), 1e-3); // 98 x 200 in a row, a fifth of `most`
+    EXPECT_NEAR(scatterDistance(sliversOf(0.2245), faces, kAsked), 1.1e-3, 2e-5) << "as much larger as they are longer";
     const std::vector<glm::dvec3> far      = sliversOf(100);
     const double                  distance = scatterDistance(far, faces, kAsked);
     EXPECT_LE(98 * 100 / distance, 0.2 * 100'000 * 1.01); // a fifth of `most`; what their area takes off is little

@@ -59,15 +59,15 @@ TEST(LargeLaw, IsThatOfAllEquationsUpToOnePointEightThicknesses)
         const char* name;
         double      close; // [1]
     };
-    // Measured on a footprint of 4 mm, in %: flat 0.05, supported dome 0.3, clamped dome 0.9, cylinder 1.3, spots of 10
-    // under the finger 1.5 and beside it 2.0, saddle 0.3. What is missing are shapes: it has three.
+    // Measured on a footprint of 4 mm, in %: flat 0.05, supported dome 0.2, clamped dome 0.4, cylinder 0.15, spots of 10
+    // under the finger 1.0 and beside it 1.2, saddle 0.01. What is missing are shapes: it has three.
     for (const auto& [name, close] :
-         {Of{"flat", 0.002}, Of{"cap ss", 0.005}, Of{"cap clamped", 0.012}, Of{"cylinder", 0.016}, Of{"wart", 0.02},
-          Of{"beside", 0.022}, Of{"saddle", 0.01}}) {
+         {Of{"flat", 0.001}, Of{"cap ss", 0.003}, Of{"cap clamped", 0.006}, Of{"cylinder", 0.003}, Of{"wart", 0.012},
+          Of{"beside", 0.015}, Of{"saddle", 0.001}}) {
         const auto [little, more, most] = errorsOf(pressed(name, 32, "host"));
         EXPECT_LT(most, close) << name;
-        EXPECT_LT(more, 0.009) << name;   // measured 0.8 % at most
-        EXPECT_LT(little, 0.001) << name; // and 0.095 %
+        EXPECT_LT(more, 0.007) << name;    // measured 0.5 % at most
+        EXPECT_LT(little, 0.0015) << name; // and 0.11 %
     }
 }
 
@@ -79,22 +79,34 @@ TEST(LargeLaw, IsThatOfOtherSheetsToo)
         Edge        edge;
         double      times, beside; // a spot [1], [m]
         double      radius;        // of the fingertip [m]
+        double      nu;            // [1]
+        double      close;         // [1] up to 1.8 thicknesses
     };
     constexpr Edge kOn = Edge::supported, kIn = Edge::clamped;
-    // None of these was looked at while the depth was chosen at which shapes are found. Up to 1.8 thicknesses: 1.6 % at
-    // most, and 2.9 beside a spot of 30; 10 % with the third term of the expansion as the last shape.
-    for (const Of& of :
-         {Of{"shallow", 10, 10, kOn, 1, 0, 4e-3}, Of{"deep", 28, 28, kOn, 1, 0, 4e-3},
-          Of{"deep, clamped", 28, 28, kIn, 1, 0, 4e-3}, Of{"ellipsoid", 20, 8, kOn, 1, 0, 4e-3},
-          Of{"cylinder", 0, 20, kOn, 1, 0, 4e-3}, Of{"soft spot", 20, 20, kOn, 0.2, 0, 4e-3},
-          Of{"beside a soft spot", 20, 20, kOn, 0.2, 6e-3, 4e-3},
-          Of{"beside a spot of 30", 20, 20, kOn, 30, 5e-3, 4e-3}, Of{"wide fingertip", 20, 20, kOn, 1, 0, 7e-3},
-          Of{"the same, clamped", 20, 20, kIn, 1, 0, 7e-3}, Of{"narrow fingertip", 20, 20, kOn, 1, 0, 3e-3},
-          Of{"flat, spot", 0, 0, kIn, 10, 6e-3, 4e-3}, Of{"saddle", 20, -15, kOn, 1, 0, 4e-3},
-          Of{"from within", -20, -20, kOn, 1, 0, 4e-3}}) {
-        Shell shell = sheet(32, of.kx, of.kz, of.edge);
+    for (const Of& of : {// Seen while it was found which shapes are good.
+                         Of{"deep, clamped", 28, 28, kIn, 1, 0, 4e-3, 0.3, 0.01},
+                         Of{"ellipsoid, clamped", 30, 5, kIn, 1, 0, 4e-3, 0.3, 0.003},
+                         Of{"cylinder of 30 mm", 0, 33, kOn, 1, 0, 5e-3, 0.3, 0.008},
+                         Of{"wide fingertip", 20, 20, kOn, 1, 0, 7e-3, 0.3, 0.002},
+                         Of{"beside a soft spot", 20, 20, kIn, 0.1, 8e-3, 4e-3, 0.3, 0.005},
+                         Of{"beside a spot of 30", 20, 20, kOn, 30, 5e-3, 4e-3, 0.3, 0.035},
+                         Of{"from within", -25, -10, kIn, 1, 0, 4e-3, 0.3, 0.003},
+                         // Tried once, when the shapes were fixed: the bounds are what was found then.
+                         Of{"shallow", 12, 12, kIn, 1, 0, 6e-3, 0.3, 0.003},
+                         Of{"narrow fingertip", 40, 10, kOn, 1, 0, 3e-3, 0.3, 0.005},
+                         Of{"beside a spot of 50", 20, 20, kIn, 50, 6e-3, 4e-3, 0.3, 0.055},
+                         Of{"soft spot", 20, 20, kOn, 0.05, 0, 4e-3, 0.3, 0.003},
+                         Of{"cylinder of 20 mm", 0, 50, kIn, 1, 0, 4e-3, 0.3, 0.004},
+                         Of{"saddle", 30, -10, kIn, 1, 0, 4e-3, 0.3, 0.002},
+                         Of{"beside a spot of 10", 20, 20, kIn, 10, 5e-3, 4e-3, 0.2, 0.025},
+                         Of{"flat, beside a spot of 30", 0, 0, kIn, 30, 4e-3, 4e-3, 0.3, 0.013},
+                         Of{"tube, beside a spot of 8", 35, 3, kOn, 8, -5e-3, 5e-3, 0.4, 0.013}}) {
+        Shell shell = sheet(32, of.kx, of.kz, of.edge, of.nu);
         if (of.times != 1) addSpot(shell, of.times, of.beside);
-        EXPECT_LT(errorsOf(pressed(shell, "host", of.radius))[2], of.times > 10 ? 0.035 : 0.02) << of.name;
+        const auto [little, more, most] = errorsOf(pressed(shell, "host", of.radius));
+        EXPECT_LT(most, of.close) << of.name;
+        EXPECT_LT(more, std::max(of.close / 2, 0.003)) << of.name;
+        EXPECT_LT(little, 0.0035) << of.name; // measured 0.3 % at most
     }
 }
 

@@ -158,7 +158,7 @@ TEST_F(SceneMesh, AMeshThatNoNumberOfPointsCanStandForIsRefusedAtOnce)
     const std::map<std::string, std::string, std::less<>> km{{"length_unit", "km"}};
 
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadCloud(sceneOf(kCube, km))); }),
-                      {"mesh.ply: expected faces that 4000000 points", "can stand for", "length_unit"}));
+                      {"mesh.ply: expected faces that 4000000 points can stand for", "length_unit"}));
     auto off = km;
     off.emplace("scatter", "off");
     EXPECT_EQ(loadCloud(sceneOf(kCube, off)).cloud.size(), 8u);
