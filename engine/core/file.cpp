@@ -51,12 +51,14 @@ void refuseStrangers(const std::filesystem::path& path, const struct stat& own, 
 }
 
 /// Opens what is no file, such as a pipe or /dev/null, for writing.
+/// \param place  where the links lead that begin at the path
 int openOther(const std::filesystem::path& path, const std::filesystem::path& place)
 {
-    const auto  what = [](const struct stat& of) { return S_ISFIFO(of.st_mode) ? "a pipe" : "no file"; };
+    const auto  what = [](const struct stat& of) { return S_ISFIFO(of.st_mode) ? "a pipe" : "a device or a socket"; };
     struct stat seen {};
-    if (::lstat(place.c_str(), &seen) == 0) refuseStrangers(path, seen, place, what(seen)); // a pipe may block
-    const int   handle = ::open(place.c_str(), O_WRONLY | O_CLOEXEC);
+    if (::stat(path.c_str(), &seen) == 0) refuseStrangers(path, seen, place, what(seen)); // a pipe may block
+    // By the path itself: where /dev/stdout leads to a pipe, the text of its last link is no name.
+    const int   handle = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
     struct stat opened {};
     if (handle < 0 || ::fstat(handle, &opened) != 0 || !isStrangers(opened, place)) return handle;
     ::close(handle); // it was changed meanwhile

@@ -1,7 +1,7 @@
 #include "engine/session/scene_held.h"
 
 #include <algorithm>
-#include <optional>
+#include <iterator>
 
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
@@ -76,15 +76,22 @@ constexpr std::string_view kRegion = R"({"type": "object", "additionalProperties
 /// Sets the shares of the points that a region holds to 1.
 void hold(std::vector<double>& shares, std::span<const glm::dvec3> positions, const SceneHeld::Region& region)
 {
-    constexpr std::size_t         kMany = 32; // places from which on a search takes less time than looking at each
-    std::optional<NeighbourIndex> places;
-    if (!region.isBox && region.places.size() >= kMany) places.emplace(region.places);
-    for (std::size_t n = 0; n < positions.size(); ++n) {
-        const glm::dvec3& point = positions[n];
-        if (places ? glm::distance(region.places[places->nearest(point, 1)[0].point], point) <= region.radius
-                   : region.holds(point))
-            shares[n] = 1;
+    constexpr std::size_t kMany = 32; // places from which on a search takes less time than looking at each
+    if (region.isBox || region.places.size() < kMany) {
+        for (std::size_t n = 0; n < positions.size(); ++n)
+            if (region.holds(positions[n])) shares[n] = 1;
+        return;
     }
+    SceneHeld::Region box{true, {positions[0], positions[0]}, 0}; // beyond it no place holds a point
+    for (const glm::dvec3& p : positions) box.places = {glm::min(box.places[0], p), glm::max(box.places[1], p)};
+    box.places[0] -= region.radius;
+    box.places[1] += region.radius;
+    std::vector<glm::dvec3> near;
+    std::ranges::copy_if(region.places, std::back_inserter(near), [&](const glm::dvec3& at) { return box.holds(at); });
+    if (near.empty()) return;
+    const NeighbourIndex places(near);
+    for (std::size_t n = 0; n < positions.size(); ++n)
+        if (glm::distance(near[places.nearest(positions[n], 1)[0].point], positions[n]) <= region.radius) shares[n] = 1;
 }
 
 } // namespace
@@ -110,7 +117,7 @@ SceneHeld parseHeld(const std::string& text, const std::string& what)
     for (const JsonObject& one : list.objects("held", kMostRegions, "held region", "a list of 1 to 64 regions"))
         held.regions.push_back(regionOf(one));
     std::size_t places = 0;
-    for (const SceneHeld::Region& region : held.regions) places += region.places.size();
+    for (const SceneHeld::Region& region : held.regions) places += region.isBox ? 0 : region.places.size();
     if (places > kMostPlaces)
         throw Error(what + ": expected at most " + std::to_string(kMostPlaces) + " places in all regions, found " +
                     std::to_string(places));

@@ -268,6 +268,18 @@ TEST_F(Files, AStrangersPipeInAFolderOfAnybodyIsRefused)
     EXPECT_NE(refusalOf([&] { writeFileWhole(pipe, writeNew); }), "") << "nor is a reader waited for";
 }
 
+TEST_F(Files, APipeIsWrittenByTheLinkThatStandardOutputIs)
+{
+    int ends[2];
+    ASSERT_EQ(::pipe(ends), 0);
+    writeFileWhole("/proc/self/fd/" + std::to_string(ends[1]), writeNew); // as /dev/stdout leads there
+    char text[8]{};
+    EXPECT_EQ(::read(ends[0], text, sizeof text), 3);
+    EXPECT_STREQ(text, "new");
+    ::close(ends[0]);
+    ::close(ends[1]);
+}
+
 TEST_F(Files, APipeWhereNobodyMeansOneIsRefusedAndNotWaitedFor)
 {
     ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0666), 0);

@@ -1,11 +1,12 @@
 // Calls on files that fail, for whole programs: loaded before the C library (LD_PRELOAD), it counts what changes files and
-// folders (writes to regular files, syncs, names, lengths) and fails
+// folders (new ones, writes to regular files, syncs, lengths, names; not what is removed, which a full disk lets go) and fails
 //
 //     FAILING_FILES_AT=n        the n-th such call, counted from 1, and all later ones: a disk that is full
 //     FAILING_FILES_ONCE=n      the n-th alone: a disk that has an error
 //     FAILING_FILES_COUNT=FILE  how many there were so far
 #include <atomic>
 #include <cerrno>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 
@@ -35,7 +36,8 @@ void report(long calls)
 {
     static const auto        real = next<ssize_t(int, const void*, size_t, off_t)>("pwrite");
     static const char* const path = std::getenv("FAILING_FILES_COUNT");
-    static const int         file = path ? ::open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644) : -1;
+    static const auto        make = next<int(const char*, int, ...)>("open");
+    static const int         file = path ? make(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644) : -1;
     char                     text[24];
     const int                size = std::snprintf(text, sizeof text, "%ld\n", calls);
     if (file >= 0) static_cast<void>(real(file, text, size_t(size), 0) == size);
@@ -50,6 +52,11 @@ bool fails()
     if (at > 0 && n >= at) errno = ENOSPC;
     if (once > 0 && n == once) errno = EIO;
     return (at > 0 && n >= at) || (once > 0 && n == once);
+}
+
+bool makesFile(int flags)
+{
+    return (flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE;
 }
 
 /// What a program says to a terminal or a pipe is not meant, nor what it is started with writes to.
@@ -92,6 +99,38 @@ int fdatasync(int handle)
 {
     static const auto real = next<int(int)>("fdatasync");
     return isFile(handle) && fails() ? -1 : real(handle);
+}
+
+int ftruncate(int handle, off_t length) noexcept
+{
+    static const auto real = next<int(int, off_t)>("ftruncate");
+    return isFile(handle) && fails() ? -1 : real(handle, length);
+}
+
+int ftruncate64(int handle, off64_t length) noexcept
+{
+    static const auto real = next<int(int, off64_t)>("ftruncate64");
+    return isFile(handle) && fails() ? -1 : real(handle, length);
+}
+
+int open(const char* path, int flags, ...)
+{
+    static const auto real = next<int(const char*, int, ...)>("open");
+    va_list           more;
+    va_start(more, flags);
+    const auto mode = makesFile(flags) ? va_arg(more, mode_t) : 0;
+    va_end(more);
+    return makesFile(flags) && fails() ? -1 : real(path, flags, mode);
+}
+
+int open64(const char* path, int flags, ...)
+{
+    static const auto real = next<int(const char*, int, ...)>("open64");
+    va_list           more;
+    va_start(more, flags);
+    const auto mode = makesFile(flags) ? va_arg(more, mode_t) : 0;
+    va_end(more);
+    return makesFile(flags) && fails() ? -1 : real(path, flags, mode);
 }
 
 int rename(const char* from, const char* to) noexcept

@@ -29,7 +29,7 @@ cat >sheet.json <<'JSON'
 {"cloud": "sample:sheet", "points": 1000, "thickness": "4 mm", "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 16, "footprint_radius": "4.4 mm"}
 JSON
 cat >plan.json <<'JSON'
-{"title": "t", "seconds": 0.5, "hand": "press", "conditions": [{"name": "SOFT", "scene": "sheet.json"}],
+{"title": "t", "seconds": 1.5, "hand": "press", "conditions": [{"name": "SOFT", "scene": "sheet.json"}],
  "tasks": [{"name": "real", "kind": "rating", "statement": "It felt real.", "least": "no", "most": "yes"}]}
 JSON
 awk -v OFS=, 'BEGIN { print "probe,depth [mm],force,x,y,z"
@@ -45,7 +45,7 @@ convert_pcd a.pcd convert skin.ply WHERE/a.pcd
 convert_csv a.csv convert skin.ply WHERE/a.csv
 paint b.ply paint skin.ply --stroke at=0,0,0mm;radius=5mm;value=2MPa --out WHERE/b.ply
 touch touched touch $sheet --out WHERE/touched
-render c.png render sample:skin --points 2000 --cells 16 --size 120x90 --out WHERE/c.png
+render c.png render sample:skin --points 2000 --cells 32 --size 120x90 --out WHERE/c.png
 export d.csv export session --csv WHERE/d.csv
 run recorded run $sheet --clock virtual --seconds 0.5 --record WHERE/recorded
 run_real recorded run $sheet --hand falcon-emulator --seconds 0.3 --record WHERE/recorded
@@ -53,7 +53,7 @@ solve e.npy solve plate.json --solver host --out WHERE/e.npy
 fit f.csv fit probes.csv --out WHERE/f.csv
 fit_page g.html fit probes.csv --page WHERE/g.html
 perceive h.svg perceive $sheet --reach 10mm --places 3 --out WHERE/h.svg
-hunt i.svg hunt $hunt --hand press --clock virtual --seconds 0.3 --solver host --cells 16 --out WHERE/i.svg
+hunt i.svg hunt $hunt --hand press --clock virtual --seconds 0.3 --solver host --cells 32 --out WHERE/i.svg
 study study study plan.json --participant P1 --clock virtual --out WHERE/study
 bench bench bench --quick --solver host --cases dispatches --out WHERE/bench
 calibrate palpate calibrate --emulator
@@ -81,7 +81,8 @@ attempt() {
     shift 4
     case $output in *.*) (echo 'what was there before' >"$where/$output") 2>/dev/null ;; esac
     (eval "$limit" && XDG_CONFIG_HOME=$where exec "$palpate" "$@") >out.txt 2>err.txt
-    judge "$name ($limit)" "$output" "$where" $?
+    status=$?
+    judge "$name ($limit)" "$output" "$where" $status
 }
 
 # every LIMIT WHERE: all commands under it.
@@ -113,6 +114,7 @@ every_call() {
         again "export FAILING_FILES_COUNT=$work/calls"
         calls=$(cat calls 2>/dev/null || echo 0) most=$instants n=0
         [ "$calls" -gt 0 ] || complain "$name changes no file: are its calls counted?"
+        [ "$status" -eq 0 ] || complain "$name fails without a fault: $(cat err.txt)"
         [ "$most" -gt 0 ] && [ "$most" -lt "$calls" ] || most=$calls
         while [ $n -lt "$most" ]; do
             for as in AT ONCE; do again "export FAILING_FILES_$as=$((n * calls / most + 1))"; done

@@ -187,15 +187,6 @@ def bits(count):
     return head + b"".join(struct.pack("<3f", *p[:3]) for p in points(200)) + bytes([200, *corners]) * (count // 10)
 
 
-def comb(count):
-    """Polygons of 256 corners each, which are not convex: each has one ear after the other in its teeth."""
-    corners = [(k, 0.0 if k % 2 else 10.0 + k % 5) for k in range(254)] + [(253, -1.0), (0, -1.0)]
-    faces = count // 160
-    return (f"ply\nformat ascii 1.0\nelement vertex 256\nproperty float x\nproperty float y\nproperty float z\n"
-            f"element face {faces}\nproperty list int int vertex_indices\nend_header\n"
-            + "".join("%g %g 0\n" % c for c in corners) + ("256 " + " ".join(str(255 - k) for k in range(256)) + "\n") * faces)
-
-
 def single(count):
     return "depth,force,probe\n" + "".join("%d,1,%x\n" % (n % 2, n) for n in range(count))
 
@@ -211,7 +202,7 @@ def cells_of_nothing(count):
 
 # What single readers once took too long for, or too much memory.
 SHAPES = {
-    ("text", "same"): same, ("ply", "bits"): bits, ("ply", "comb"): comb, ("probes", "single"): single,
+    ("text", "same"): same, ("ply", "bits"): bits, ("probes", "single"): single,
     ("trials", "conditions"): conditions, ("trials", "short"): cells_of_nothing,
     ("vtk", "parts"): lambda count: vtk(9).split("POINT_DATA")[0] + "CELLS 0 0\n" * count,
     ("recording", "keys"): lambda count: 's{"format": 1, "clock": "virtual", "device": "host", "command": "palpate", "scene": {%s}}'

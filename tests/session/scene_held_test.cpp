@@ -79,6 +79,7 @@ TEST(Held, OfManyPlacesEachHoldsWhatIsNear)
     };
     EXPECT_EQ(held(many), held(few));
     EXPECT_GT(held(few), 50);
+    EXPECT_EQ(held(many + ", [1e300, 0, 0], [-1e9, 1e9, 3]"), held(few)) << "places far off hold nothing";
 }
 
 TEST(Held, MistakesAreNamed)

@@ -11,7 +11,7 @@
 namespace palp {
 namespace {
 
-/// Most corners of a polygon that is tried: the time grows with the square of their number, rarely more.
+/// Most corners of a polygon that is tried: the time grows with the square of their number.
 constexpr std::size_t kMostCorners = 256;
 
 /// Area of a triangle of a fan, over that of the polygon, below which it is no more than rounded [1].
@@ -79,10 +79,11 @@ std::optional<std::vector<Triangle>> trianglesOfConcave(std::span<const glm::dve
     std::vector<Triangle> triangles;
     // An ear that is cut off changes its two neighbours, rarely others, which are asked again only when none is left.
     std::vector<char> isNone(corners.size());
+    int               rounds     = 8; // of asking everybody again; real polygons need one or two
     bool              askedAgain = false;
     for (std::size_t place = 0, tried = 0; left.size() > 3;) {
         if (tried == left.size()) {
-            if (std::exchange(askedAgain, true)) return std::nullopt; // it crosses itself
+            if (std::exchange(askedAgain, true) || --rounds == 0) return std::nullopt; // it crosses itself
             std::ranges::fill(isNone, false);
             tried = 0;
         }

@@ -19,7 +19,7 @@ constexpr std::size_t kMostProbes  = 10'000;                 // a survey has hun
 constexpr double      kDeepest     = 0.1;                    // [m] no probe goes deeper: such numbers are millimetres
 constexpr double      kShallowest  = 1e-9;                   // [m] any probe goes deeper
 constexpr double      kWeakest     = 1e-9;                   // [N] any probe pushes harder
-constexpr double      kLongest     = 1e6;                    // [s] two weeks
+constexpr double      kLongest     = 1e6;                    // [s] eleven days
 constexpr double      kStrongest   = 1e3;                    // [N] no probe pushes harder: such numbers are mN
 
 enum Column : std::size_t { kDepth, kForce, kTime, kX, kY, kZ, kNx, kNy, kNz, kColumns };
@@ -252,7 +252,7 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
             throw Error(where() + ": expected at least " + std::to_string(header->width()) + " numbers, found " +
                         std::to_string(cells.size()));
         const std::string called =
-            header->probe() && *header->probe() < cells.size() ? shownText(cells[*header->probe()]) : "1";
+            header->probe() && *header->probe() < cells.size() ? std::string(cells[*header->probe()]) : "1";
         const auto [at, fresh] = known.try_emplace(called, drafts.size());
         if (fresh) {
             if (drafts.size() == kMostProbes)
@@ -260,7 +260,7 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
                             " probes, found more; the column \"probe\" names "
                             "them: it is the same in all rows of one touch");
             drafts.emplace_back();
-            drafts.back().probe.name = called;
+            drafts.back().probe.name = shownText(called);
             const auto point         = [&](Column x, Column y, Column z) -> std::optional<glm::dvec3> {
                 if (!header->has(x) || !header->has(y) || !header->has(z)) return {};
                 return glm::dvec3(header->read(x, cells, where()), header->read(y, cells, where()),

@@ -209,14 +209,9 @@ void VulkanSurface::fit(VkExtent2D size)
     freshPanels_ = panels_ != nullptr; // into the new image
     for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &panelStep_, &lightStep_})
         step->framebuffer = {};
-    try {
-        makeImages();
-        makeFramebuffers();
-        pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, compute::Intent::readback);
-    } catch (...) {
-        size_ = {}; // the next picture makes what is missing
-        throw;
-    }
+    makeImages();
+    makeFramebuffers();
+    pixels_.emplace(owner_, "pixels", std::size_t(4) * size.width * size.height, compute::Intent::readback);
 }
 
 namespace {
@@ -410,30 +405,41 @@ void VulkanSurface::copyToHost()
                          nullptr, 0, nullptr);
 }
 
+/// Records a picture, and what follows it. Where that fails, the next picture makes and draws everything anew.
+template <class Finish>
+void VulkanSurface::complete(const SurfaceInput& input, Finish&& finish)
+{
+    try {
+        fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
+        upload(input);
+        describe();
+        beginList();
+        record(input);
+        finish();
+    } catch (...) {
+        size_ = {};
+        throw;
+    }
+}
+
 std::span<const std::uint8_t> VulkanSurface::draw(const SurfaceInput& input)
 {
-    fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
-    upload(input);
-    describe();
-    beginList();
-    record(input);
-    copyToHost();
-    check(vkEndCommandBuffer(commands_), "end a list of commands");
-    context_.submit({&commands_, 1});
-    pixels_->makeVisibleToHost();
+    complete(input, [this] {
+        copyToHost();
+        check(vkEndCommandBuffer(commands_), "end a list of commands");
+        context_.submit({&commands_, 1});
+        pixels_->makeVisibleToHost();
+    });
     return pixels_->as<std::uint8_t>();
 }
 
 void VulkanSurface::start(const SurfaceInput& input, VulkanWindow& window)
 {
-    fit({std::uint32_t(input.frame.width), std::uint32_t(input.frame.height)});
-    upload(input);
-    describe();
-    beginList();
-    record(input);
-    window.copy(commands_, picture_->image.get(), size_);
-    check(vkEndCommandBuffer(commands_), "end a list of commands");
-    context_.start({&commands_, 1});
+    complete(input, [&] {
+        window.copy(commands_, picture_->image.get(), size_);
+        check(vkEndCommandBuffer(commands_), "end a list of commands");
+        context_.start({&commands_, 1});
+    });
     started_ = true;
 }
 
@@ -458,7 +464,10 @@ void VulkanSurface::takePanels()
 {
 #ifdef PALPATE_PANELS
     PALP_EXPECT(hasPanels() || !started_, "the first panels, and those of another font, are made between two pictures");
-    if (!hasPanels()) panels_.reset(); // the back end can take a font once only
+    if (!hasPanels()) { // the back end can take a font once only
+        panels_.reset();
+        freshPanels_ = false;
+    }
     if (!panels_) panels_ = std::make_unique<VulkanPanels>(context_, panelStep_.pass.get());
     panelTiles_  = VulkanPanels::tiles();
     panelSize_   = VulkanPanels::size();

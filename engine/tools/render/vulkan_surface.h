@@ -65,6 +65,8 @@ private:
     void describe();
     void beginList();
     void record(const SurfaceInput& input);
+    template <class Finish>
+    void complete(const SurfaceInput& input, Finish&& finish);
     void recordPanels();
     void bindAll();
     void recordSurface(const SurfaceInput& input);

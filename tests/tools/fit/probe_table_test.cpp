@@ -69,6 +69,10 @@ TEST(ProbeTable, WhatNoProbeMeasuresIsRefusedAndANameIsShownAsATerminalMayHaveIt
     const auto probes = parseProbes(
         "depth,force,probe\n0,0,\x1b[31m\n.01,1,\x1b[31m\n.02,2,\x1b[31m\n.03,3,\x1b[31m\n.04,4,\x1b[31m\n", "p");
     EXPECT_EQ(probes[0].name, "?[31m");
+    std::string latin = "probe,depth,force\n"; // names of one byte each that is no UTF-8
+    for (int n = 0; n < 10; ++n)
+        latin += std::string(1, n % 2 ? '\xe4' : '\xf6') + ",0.0" + std::to_string(n / 2) + ",1\n";
+    EXPECT_EQ(parseProbes(latin, "p").size(), 2u);
 }
 
 TEST(ProbeTable, ANameForEachRowIsRefused)
