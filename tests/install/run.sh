@@ -39,7 +39,7 @@ export PKG_CONFIG_PATH
 libraries=$(dirname "$PKG_CONFIG_PATH")
 eval "set -- $(pkg-config --cflags --libs palpate)" # it quotes what a shell would divide
 # shellcheck disable=SC2086
-gcc -std=c11 -pedantic -Wall -Wextra -Werror "$source/../capi/capi_program.c" -o "$place/c program" "$@" -lm
+gcc -std=c11 -pedantic -Wall -Wextra -Werror "$source/../capi/program/capi_program.c" -o "$place/c program" "$@" -lm
 LD_LIBRARY_PATH=$libraries "$place/c program"
 python=${PALPATE_PYTHON:-/usr/bin/python3}
 if "$python" -c 'import numpy' 2>/dev/null; then
