@@ -67,23 +67,6 @@ double bounded(const JsonObject& file, const char* key, double least, double mos
     file.refuse(key, bounds.data());
 }
 
-FalconConstants parse(const std::string& text, const std::string& where, const std::string& serial)
-{
-    const JsonObject file = JsonObject::parse(text, where);
-    file.allowOnly({"format", "serial", "counts_per_torque", "arm_kg", "hold_s", "date"});
-    if (file.text("format") != kFormat) file.refuse("format", '"' + std::string(kFormat) + '"');
-    if (file.text("serial") != serial) file.refuse("serial", "\"" + serial + "\", the number of the Falcon");
-    FalconConstants found;
-    found.serial = serial;
-    found.countsPerTorque =
-        bounded(file, "counts_per_torque", FalconMotors::kLeastCountsPerTorque, FalconMotors::kMostCountsPerTorque);
-    found.armMass = bounded(file, "arm_kg", 0, kMostArm);
-    if (file.has("hold_s")) found.hold = bounded(file, "hold_s", 0, kMostHold); // older files have none
-    found.date = file.text("date");
-    if (!isDate(found.date)) file.refuse("date", "a date such as 2026-11-22");
-    return found;
-}
-
 /// Returns false if there is no such file.
 /// \throws Unreadable if it cannot be read, or if it cannot be known whether it is there
 bool isReadable(const fs::path& file)
@@ -110,6 +93,23 @@ fs::path falconConstantsFile(const std::string& serial)
     return folder / (name + ".json");
 }
 
+FalconConstants parseFalconConstants(std::string_view text, const std::string& where, const std::string& serial)
+{
+    const JsonObject file = JsonObject::parse(text, where);
+    file.allowOnly({"format", "serial", "counts_per_torque", "arm_kg", "hold_s", "date"});
+    if (file.text("format") != kFormat) file.refuse("format", '"' + std::string(kFormat) + '"');
+    if (file.text("serial") != serial) file.refuse("serial", "\"" + serial + "\", the number of the Falcon");
+    FalconConstants found;
+    found.serial = serial;
+    found.countsPerTorque =
+        bounded(file, "counts_per_torque", FalconMotors::kLeastCountsPerTorque, FalconMotors::kMostCountsPerTorque);
+    found.armMass = bounded(file, "arm_kg", 0, kMostArm);
+    if (file.has("hold_s")) found.hold = bounded(file, "hold_s", 0, kMostHold); // older files have none
+    found.date = file.text("date");
+    if (!isDate(found.date)) file.refuse("date", "a date such as 2026-11-22");
+    return found;
+}
+
 std::optional<FalconConstants> readFalconConstants(const std::string& serial)
 {
     const fs::path file = falconConstantsFile(serial);
@@ -117,7 +117,8 @@ std::optional<FalconConstants> readFalconConstants(const std::string& serial)
     try {
         std::error_code failed;
         if (!fs::is_regular_file(file, failed)) throw Error(file.string() + ": it is no file"); // a pipe would wait
-        return parse(readWhole(file, kMost, "the calibration of a Falcon", Pipes::refused), file.string(), serial);
+        return parseFalconConstants(readWhole(file, kMost, "the calibration of a Falcon", Pipes::refused),
+                                    file.string(), serial);
     } catch (const Error& error) {
         throw Error(std::string("the Falcon's calibration is damaged: ") + error.what() + kRemedy);
     }
@@ -134,7 +135,8 @@ fs::path writeFalconConstants(const FalconConstants& found)
                                                found.countsPerTorque, found.armMass, hold.data(), found.date.c_str());
     if (size < 0 || std::size_t(size) >= text.size())
         throw Error("the calibration cannot be stored: its texts are too long");
-    static_cast<void>(parse(text.data(), file.string(), found.serial)); // what cannot be read is not written
+    static_cast<void>(
+        parseFalconConstants(text.data(), file.string(), found.serial)); // what cannot be read is not written
     makeFolder(file.parent_path());
     writeFileWhole(file, [&](std::ostream& out) { out << text.data(); });
     return file;

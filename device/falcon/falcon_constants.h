@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "device/falcon/falcon_motors.h"
 
@@ -26,6 +27,12 @@ inline constexpr double kMostHold = 1; ///< [s] the longest hold that is believe
 
 /// Returns the file of the Falcon with this serial number; empty if neither XDG_CONFIG_HOME nor HOME is set.
 [[nodiscard]] std::filesystem::path falconConstantsFile(const std::string& serial);
+
+/// Reads the text of such a file.
+/// \param where  opens complaints
+/// \throws Error naming the key, what was expected and found
+[[nodiscard]] FalconConstants parseFalconConstants(std::string_view text, const std::string& where,
+                                                   const std::string& serial);
 
 /// Reads what was found of a Falcon. The file is believed only as a whole: any other size, key, type or range is
 /// refused. So is one that this user may not read: it may hold other counts than those that would be used without it.

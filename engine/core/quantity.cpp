@@ -94,9 +94,14 @@ NumberAndUnit split(std::string_view text, std::string_view what)
 double parseQuantity(std::string_view text, Dimension dimension, std::string_view what, double siPerPlainNumber)
 {
     const auto [number, unit] = split(text, what);
-    if (unit.empty()) return number * siPerPlainNumber;
+    const auto inSi           = [&, number = number](double one) {
+        if (!std::isfinite(number * one))
+            throw Error(std::string(what) + ": expected a finite number, found \"" + std::string(text) + "\"");
+        return number * one;
+    };
+    if (unit.empty()) return inSi(siPerPlainNumber);
     for (const Unit& known : unitsOf(dimension))
-        if (known.name == unit) return number * known.inSi;
+        if (known.name == unit) return inSi(known.inSi);
     throw Error(std::string(what) + ": unknown unit \"" + std::string(unit) + "\" in \"" + std::string(text) +
                 "\"; known units: " + listed(unitsOf(dimension)));
 }

@@ -7,6 +7,7 @@
 //     FAILING_LAYER_AS=memory      that call has no memory, as far as it may say so; those after it have
 //                     lost        the processor is lost from that call on
 //                     hang        what is submitted from that call on is never finished
+//                     crash       that call ends the program by abort()
 //     FAILING_LAYER_COUNT=FILE     the number of calls goes there when a device or an instance is destroyed
 #include <algorithm>
 #include <array>
@@ -112,7 +113,9 @@ bool isDue(std::string_view name)
     static const std::string_view only = setting("FAILING_LAYER_ONLY");
     if (!only.empty() && name != only) return false;
     static const long at = std::atol(std::string(setting("FAILING_LAYER_AT")).c_str());
-    return ++counted == at;
+    const bool        due = ++counted == at;
+    if (due && setting("FAILING_LAYER_AS") == "crash") std::abort();
+    return due;
 }
 
 bool isWait(Call call)

@@ -67,6 +67,15 @@ TEST(Quantity, EveryUnitIsThatManySiUnits)
         EXPECT_NEAR(parseQuantity(std::string("3 ") + unit, dimension, "x") / (3 * inSi), 1, 1e-12) << unit;
 }
 
+TEST(Quantity, WhatItsUnitMakesInfiniteIsRefused)
+{
+    EXPECT_GT(parseQuantity("1e308 mm", Dimension::length, "--window"), 9e304);
+    for (const char* text : {"1e308 km", "-1e308km"})
+        EXPECT_THROW((void)parseQuantity(text, Dimension::length, "--window"), Error) << text;
+    EXPECT_THROW((void)parseQuantity("1e308", Dimension::length, "--window", 1e3), Error);
+    EXPECT_THROW((void)parsePoint("0,1e308 km,0", "--place"), Error);
+}
+
 TEST(Quantity, AnythingElseIsRefusedWithTheKnownUnits)
 {
     for (const char* text : {"", "mm", "nan", "inf", "1e999", "4 parsec", "4mmm", "0x10", "4,5", "+-4"})

@@ -1,18 +1,20 @@
 #!/bin/sh
 # A Vulkan driver that fails at its n-th call, n spread over the whole life of a program: calls without memory, a processor
-# that is lost from then on, and one that never finishes. Arguments: the program and the folder of the layer's manifest
-# (tests/compute/failing_layer.cpp). The environment names lavapipe.
+# that is lost from then on, one that never finishes, and one that takes the program with it. Arguments: the program, the folder of
+# the layer's manifest (tests/compute/failing_layer.cpp), the library of failing_files.cpp, and the build's sanitizers. The environment names lavapipe.
 #
 # Expected each time: an exit of the program's own, with a sentence if it is not 0; an answer that is the good one, because
 # the host took over; of a session every tick, with a force that is finite and at most the limit.
 # PALPATE_INSTANTS says how many calls of each command fail in each way (4); 0 means every call, which takes an hour.
 set -u
-palpate=$1 layer=$2 instants=${PALPATE_INSTANTS:-4}
+palpate=$1 layer=$2 failing_files=$3 sanitizers=${4:-} instants=${PALPATE_INSTANTS:-4}
 unset PALPATE_INSTANTS # it is no key of a scene
 work=$(mktemp -d)
 server=
 trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
 cd "$work" || exit 1
+# shellcheck disable=SC3045
+ulimit -c 0 2>/dev/null # what a driver ends need leave no core
 passed=0 failed=0
 pass() { passed=$((passed + 1)); }
 complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
@@ -29,12 +31,15 @@ arguments() { # of a command
 number() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\),*\$/\1/p" "$2" | head -n 1; }
 isnear() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a - b <= 0.01 * b && b - a <= 0.01 * b) }'; }
 
-# forces_are_good: every tick is there, and its force is finite and at most the 6 N of a session.
+# forces_are_good TICKS: each of so many ticks, or of fewer where that is "some", is there; its force is finite and at most
+# the 6 N of a session, its time a millisecond after the last.
 forces_are_good() {
     "$palpate" export recorded --csv recorded.csv >/dev/null 2>&1 || return 1
-    awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_x") x = n; next }
-        { for (n = x; n < x + 3; ++n) if ($n !~ /^[-+0-9.e]+$/ || $n > 6 || $n < -6) exit 1; ++ticks }
-        END { exit ticks != 400 }' recorded.csv
+    awk -F, -v all="$1" 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_x") x = n; next }
+        { for (n = x; n < x + 3; ++n) if ($n !~ /^[-+0-9.e]+$/ || $n > 6 || $n < -6) exit 1
+          if ($1 - ticks * 1e-3 > 1e-6 || ticks * 1e-3 - $1 > 1e-6) exit 1
+          ++ticks }
+        END { exit all != "some" && ticks != all }' recorded.csv
 }
 
 # judge COMMAND WHAT STATUS
@@ -52,10 +57,24 @@ judge() {
     fi
     case $1 in
     touch) isnear "$(number felt_stiffness out.txt)" "$felt" || { complain "$2: another answer: $(number felt_stiffness out.txt)"; return; } ;;
-    run) forces_are_good || { complain "$2: a bad tick"; return; } ;;
+    run) forces_are_good 400 || { complain "$2: a bad tick"; return; } ;;
     render) cmp -s picture.png good.png || { complain "$2: another picture"; return; } ;;
     esac
     pass
+}
+
+# judge_crash COMMAND WHAT STATUS: the driver has ended the program, which is to a device what kill -9 is. What was recorded is
+# there, and no half of a picture.
+judge_crash() {
+    if [ "$3" -ne 134 ] && { [ "$1" != view ] || [ "$3" -ne 0 ]; }; then
+        complain "$2: exit $3, not 134: $(tail -n 3 err.txt)"
+    elif [ -e picture.png ] && ! cmp -s picture.png good.png; then
+        complain "$2: there is half a picture"
+    elif [ "$(wc -c 2>/dev/null <recorded/ticks.npy || echo 0)" -gt 2000 ] && ! forces_are_good some; then
+        complain "$2: a bad tick"
+    else
+        pass
+    fi
 }
 
 # attempt COMMAND AS N
@@ -63,7 +82,8 @@ attempt() {
     rm -rf recorded picture.png
     # shellcheck disable=SC2046
     FAILING_LAYER_AS=$2 FAILING_LAYER_AT=$3 timeout -s KILL 120 "$palpate" $(arguments "$1") >out.txt 2>err.txt </dev/null
-    judge "$1" "$1, $2 at call $3" $?
+    status=$?
+    if [ "$2" = crash ]; then judge_crash "$1" "$1, $2 at call $3" $status; else judge "$1" "$1, $2 at call $3" $status; fi
 }
 
 # A window needs a display; its session is in real time, so that a call is another one each time.
@@ -90,12 +110,12 @@ for command in $commands; do
     [ $command != touch ] || felt=$(number felt_stiffness out.txt)
     [ $command != render ] || mv picture.png good.png
     [ "$calls" -gt 40 ] || complain "$command makes $calls calls only: are they counted?"
-    for as in memory lost hang; do
+    for as in memory lost hang crash; do
         most=$instants n=0
         [ "$most" -gt 0 ] || most=$calls
         [ $command != view ] || [ "$most" -le 300 ] || most=300 # of the thousands of a window's pictures
         while [ $n -lt "$most" ]; do # in equal shares of the calls, at another place of each for each way
-            attempt $command $as "$(awk -v n=$n -v most="$most" -v calls="$calls" -v as=$as 'BEGIN { srand(index("memory lost hang", as)); print most == calls ? n + 1 : int((n + rand()) * calls / most) + 1 }')"
+            attempt $command $as "$(awk -v n=$n -v most="$most" -v calls="$calls" -v as=$as 'BEGIN { srand(index("memory lost hang crash", as)); print most == calls ? n + 1 : int((n + rand()) * calls / most) + 1 }')"
             n=$((n + 1))
         done
     done
@@ -116,6 +136,25 @@ case $commands in
     done
     ;;
 esac
+
+# A driver keeps what it has compiled in files of its own. Where these cannot be written nobody feels it.
+unset VK_INSTANCE_LAYERS FAILING_LAYER_AS FAILING_LAYER_ONLY
+compile() { # as if for the first time
+    rm -rf shaders files
+    # shellcheck disable=SC2046
+    env MESA_SHADER_CACHE_DIR="$work/shaders" LD_PRELOAD="$failing_files" FAILING_FILES_COUNT=files "$@" "$palpate" $(arguments touch) >out.txt 2>err.txt
+    status=$?
+    judge touch "touch, $*" $status
+    [ $status -eq 0 ] || complain "touch, $*: exit $status"
+}
+if [ -z "$sanitizers" ]; then # which want to be loaded first
+    compile FAILING_FILES_AT=0
+    writes=$(cat files 2>/dev/null || echo 0)
+    [ "$writes" -gt 2 ] || complain "the driver wrote its files $writes times only: where are they?"
+    for at in 1 2 3 $((writes / 2)) "$writes"; do
+        for way in AT ONCE; do compile FAILING_FILES_$way="$at"; done
+    done
+fi
 
 echo "$passed checks passed, $failed failed"
 [ $failed -eq 0 ]

@@ -160,6 +160,13 @@ FORMATS = {
     "hand": hand, "recording": recording, "haply": haply, "capi": capi,
     "bridge": lambda count: (b"\x01PB\x11\x01\x00\x06\x00" + bytes(56)) * count,
     "falcon": lambda count: "<AAAABBBBPPPPADA>" * count,
+    "calibration": lambda count: (json.dumps({"format": "palpate falcon calibration 1", "serial": "FZ1", "counts_per_torque": 4321.5,
+                                              "arm_kg": 0.213, "date": "2026-11-22"}) + "\0") * (count // 8),
+    "marker": lambda count: "trial of the second block\0" * count,
+    "space_mouse": lambda count: (b"\x0d\x01" + bytes(12) + b"\x02\x03\x01") * count,
+    "study": lambda count: json.dumps({"format": 1, "participant": "p", "plan": "p" * count, "clouds": ["0a1b2c3d4e5f"] * count}),
+    "window": lambda count: json.dumps({"width": 1500, "height": 900, "files": ["/not/here"] * count}),
+    "word": lambda count: "1 4 mm\np0, 1mm, 2\nr0.26@0.41s\nuudp:127.0.0.1:9870\nhhost:80/049D\n" * count,
     "probes": lambda count: "depth,force\n" + "".join("%g,%g\n" % (n * 1e-7, n * 1e-4) for n in range(count)),
 }
 
@@ -170,6 +177,7 @@ def of_json(lists):
         "problem": '{"size": %s}' % lists, "scene": '{"cloud": %s}' % lists, "plan": '{"title": "t", "conditions": %s}' % lists,
         "hunt": '{"random": {"count": %s}}' % lists, "recording": 's{"format": 2, "clock": "virtual", "scene": {"cloud": %s}}' % lists,
         "haply": '{"inverse3": %s}' % lists, "capi": 'j{"window": %s}' % lists,
+        "calibration": '{"format": %s}' % lists, "study": '{"format": 1, "plan": %s}' % lists,
         "glb": chunks(b'{"nodes": [{"mesh": %s}], "scenes": [{"nodes": [0]}]}' % lists.encode(), b""),
     }
 
@@ -211,6 +219,7 @@ SHAPES = {
     ("plan", "tasks"): lambda count: json.dumps({"title": "t", "conditions": [{"name": "even", "scene": "a.json"}],
                                                   "tasks": [{"kind": [{}] * 15 * count}]}),
     ("scene", "below"): lambda count: '{"cloud": "sample:sheet", "below": {%s}}' % ", ".join('"k%d": 1' % n for n in range(count)),
+    ("window", "nested"): lambda count: '{"files": [%s]}' % ("[" * 10 * count + "]" * 10 * count),
     ("hand", "columns"): lambda count: "time,x,y,z" + ",a" * count + "\n" + ("0,0,0,0" + ",1" * count + "\n") * 2,
     ("ply", "elements"): lambda count: ply(4).replace("end_header\n", "element face 0\nproperty list uchar int v\n" * count + "end_header\n"),
 }

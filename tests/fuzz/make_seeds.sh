@@ -1,7 +1,7 @@
 #!/bin/sh
 # Writes small files that the readers accept, or nearly, for the fuzzers to start from. Argument: the folder.
 set -eu
-mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand" "$1/haply" "$1/bridge" "$1/plan" "$1/hunt" "$1/trials" "$1/recording" "$1/falcon" "$1/probes" "$1/capi"
+mkdir -p "$1/ply" "$1/pcd" "$1/text" "$1/obj" "$1/stl" "$1/glb" "$1/volume" "$1/npy" "$1/npy_cloud" "$1/vtk" "$1/vtk_xml" "$1/problem" "$1/scene" "$1/hand" "$1/haply" "$1/bridge" "$1/plan" "$1/hunt" "$1/trials" "$1/recording" "$1/falcon" "$1/probes" "$1/capi" "$1/calibration" "$1/marker" "$1/space_mouse" "$1/study" "$1/window" "$1/word"
 cd "$1"
 
 # The floats 1 and 2, little and big endian, and the doubles 1 and 2, little endian; printf takes octal.
@@ -146,3 +146,11 @@ printf "t$n8$n8$n8$E$mm$n8$n8$E$n8$mm$n8$E$mm$mm$n8$E" >capi/points
 printf 'j{"window": "6 mm", "cells": 8, "footprint_radius": "1 mm", "foundation": "1 MPa/m", "edges": "free"}' >capi/scene
 { printf s; for height in "$mm" "$mm" "$n8" "$deep" "$deep"; do printf "$tick$mm$mm$height"; zeros 18; done; } >capi/hand
 { printf 'p\001\002'; printf "$d1$d2$mm$n8"; printf '\000\001\002\003'; printf "$d2$mm$d1$d1$d2$E"; } >capi/plate
+
+constants='{"format": "palpate falcon calibration 1", "serial": "FZ1", "counts_per_torque": 4321.5, "arm_kg": 0.213,'
+printf '%s "hold_s": 0.02, "date": "2026-11-22"}\000%s "date": "2026-11-22"}' "$constants" "$constants" >calibration/two
+printf 'trial 1\000 \033[2J\t\303\244\302\205\377\340\240\000\000%-300s' long >marker/texts
+printf '\015\001\001\000\377\377\134\001\000\000\001\000\002\000\007\001\320\007\060\370\000\000\007\002\001\000\002\000\003\000\002\003\001\005\003\001\000\000\200\002\027\144\007\001\000\200\000\000\000\000' >space_mouse/reports
+printf '{"format": 1, "participant": "p1", "title": "t", "plan": "{}", "hand": "press", "clock": "virtual", "clouds": ["0a"], "felt_stiffness_N_per_m": {"even": 300.5, "wart": null}}' >study/all
+printf '{"width": 1500, "height": 900, "files": ["/a.ply", "/", 7]}\n' >window/all
+printf '1 4mm\n2-1.5e0 N\n3+0.3 MPa\n4 2N_m\n5 1 MPa/m\n6 900 N/m\n7 30 deg\n8 5 ms\n90.1\n0 1e308 km\np1,2mm, 3 in\nr0.26@0.41s,0.31@4.3s\nrnone\nuudp:127.0.0.1:9870\nuudp:[::1]:80\nuudp:7\nh049D\nh[::1]:10001/049D\nhhost:80\nludp:9000\nlserial:/dev/ttyACM0\nlcap\n' >word/words

@@ -113,13 +113,16 @@ Json largeJson(const Patch& patch, const PatchSettings& settings, double force)
     if (settings.large == Large::off) return nullptr;
     if (!patch.large) return {{"linear_because", patch.linearBecause}};
     const LargeLaw& law    = *patch.large;
-    const double    linear = force / patch.feltStiffness, depth = depthLawOf(patch).depthOf(force);
+    const DepthLaw  felt   = depthLawOf(patch);
+    const double    most   = felt.force(DepthShape::kSteps * felt.shape.step); // [N] beyond it nothing is known
+    const double    linear = force / patch.feltStiffness, depth = felt.depthOf(force);
     Json            curve = Json::array();
     for (std::size_t n = 0; n < law.force.size(); ++n)
         curve.push_back({double(n) * law.step, law.force[n], law.tangent[n]});
     return {{"depth_linear", linear},
-            {"depth", depth},
-            {"felt_stiffness", depth > 0 ? force / depth : patch.feltStiffness},
+            {"depth", force > most ? Json() : Json(depth)},
+            {"felt_stiffness", force > most ? Json() : Json(depth > 0 ? force / depth : patch.feltStiffness)},
+            {"trusted_force", most},
             {"trusted_deflection", law.reach()},
             {"plate", curve}};
 }

@@ -12,8 +12,8 @@
 #include "engine/core/quantity.h"
 #include "engine/perception/perception.h"
 #include "engine/tools/cli/commands.h"
-#include "engine/tools/cli/study_run.h"
 #include "engine/tools/study/study_analysis.h"
+#include "engine/tools/study/study_file.h"
 
 namespace palp {
 namespace {
@@ -54,7 +54,7 @@ Answers answersIn(const std::vector<std::string>& folders)
         for (const auto& participant : participantsIn(folder)) {
             if (!seen.insert(std::filesystem::weakly_canonical(participant)).second)
                 throw Error(participant.string() + ": expected each participant once, found this one twice");
-            const Json file = readStudyFile(participant);
+            const Json file = study::readStudyFile(participant);
             if (!plan.empty() && file["plan"] != plan)
                 throw Error(participant.string() + ": expected participants of one study, found another plan than that "
                                                    "of the first; analyse each plan's participants by themselves");

@@ -16,10 +16,10 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
-#include "engine/core/json_depth.h"
 #include "engine/session/interrupt.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/commit.h"
+#include "engine/tools/study/study_file.h"
 #include "engine/tools/study/trial_table.h"
 
 namespace palp {
@@ -33,10 +33,8 @@ using study::Trial;
 using study::TrialRow;
 using Json = nlohmann::json;
 
-constexpr const char* kStudyFile   = "study.json";
-constexpr std::size_t kLongestLine = 1000;                  ///< [bytes] kept of an answer
-constexpr int         kMostStrange = 20;                    ///< unknown answers in a row from input that is no terminal
-constexpr std::size_t kLargestFile = std::size_t(16) << 20; ///< [bytes] of that file
+constexpr std::size_t kLongestLine = 1000; ///< [bytes] kept of an answer
+constexpr int         kMostStrange = 20;   ///< unknown answers in a row from input that is no terminal
 
 /// A condition, ready to be touched.
 struct Felt {
@@ -168,7 +166,7 @@ std::vector<std::filesystem::path> othersIn(const std::filesystem::path& study)
     std::error_code                    failure;
     for (std::filesystem::directory_iterator entry(study, failure), end; !failure && entry != end;
          entry.increment(failure))
-        if (std::error_code ignored; std::filesystem::exists(entry->path() / kStudyFile, ignored))
+        if (std::error_code ignored; std::filesystem::exists(entry->path() / study::kStudyFile, ignored))
             found.push_back(entry->path());
     return found;
 }
@@ -184,28 +182,30 @@ void Sitting::agree()
              {"clock", run_.session.clock}};
     for (std::size_t k = 0; k < felt_.size(); ++k) now["clouds"].push_back(fingerprint(felt_[k].loaded.object.cloud()));
     std::error_code ignored;
-    if (std::filesystem::exists(folder_ / kStudyFile, ignored)) {
-        const Json before = readStudyFile(folder_);
+    if (std::filesystem::exists(folder_ / study::kStudyFile, ignored)) {
+        const Json before = study::readStudyFile(folder_);
         for (const char* key : {"participant", "plan", "clouds"})
             if (before[key] != now[key])
-                throw Error((folder_ / kStudyFile).string() + ": expected the plan that this participant began with, " +
-                            "found that " + run_.plan + " or a scene of it has changed since; choose another --out");
+                throw Error((folder_ / study::kStudyFile).string() +
+                            ": expected the plan that this participant began with, " + "found that " + run_.plan +
+                            " or a scene of it has changed since; choose another --out");
         for (const char* key : {"hand", "clock"})
             if (before.contains(key) && wordOf(before[key]) != wordOf(now[key])) // earlier versions did not keep them
-                throw Error((folder_ / kStudyFile).string() + ": expected the --" + key +
+                throw Error((folder_ / study::kStudyFile).string() + ": expected the --" + key +
                             " that this participant began with, " + before[key].dump() + ", found " + now[key].dump() +
                             "; trials could not be compared; choose another --out");
         return;
     }
     for (const auto& other : othersIn(run_.out))
-        if (readStudyFile(other)["plan"] != now["plan"])
-            throw Error((other / kStudyFile).string() + ": expected participants of one plan in " + run_.out.string() +
-                        ", found that " + run_.plan + " or a scene of it has changed since; choose another --out");
+        if (study::readStudyFile(other)["plan"] != now["plan"])
+            throw Error((other / study::kStudyFile).string() + ": expected participants of one plan in " +
+                        run_.out.string() + ", found that " + run_.plan +
+                        " or a scene of it has changed since; choose another --out");
     makeFolder(folder_);
     for (std::size_t k = 0; k < felt_.size(); ++k)
         now["felt_stiffness_N_per_m"][plan_.conditions[k].name] = felt_[k].stiffness(plan_.conditions[k].scene);
     now["version"] = PALPATE_VERSION " " PALPATE_COMMIT;
-    writeFileWhole(folder_ / kStudyFile, [&](std::ostream& file) { file << jsonText(now); });
+    writeFileWhole(folder_ / study::kStudyFile, [&](std::ostream& file) { file << jsonText(now); });
 }
 
 /// Checks that every row is the trial that the order has there.
@@ -344,17 +344,6 @@ TrialRow Sitting::trial(std::size_t number)
 }
 
 } // namespace
-
-Json readStudyFile(const std::filesystem::path& participantFolder)
-{
-    const std::filesystem::path path = participantFolder / kStudyFile;
-    const std::string           text = readWhole(path, kLargestFile, "a study's description", Pipes::refused);
-    const Json                  file = tooDeepAt(text) ? Json() : Json::parse(text, nullptr, false);
-    const bool                  good = file.is_object() && file.value("format", Json()) == 1 && file.contains("plan") &&
-                      file["plan"].is_string() && file.contains("participant") && file.contains("clouds");
-    if (!good) throw Error(path.string() + ": expected a file of palpate study, found something else");
-    return file;
-}
 
 StudyProgress runStudy(const StudyRun& run, const StudyPlan& plan)
 {

@@ -2,8 +2,6 @@
 #include <filesystem>
 #include <string>
 
-#include <nlohmann/json.hpp>
-
 #include "engine/tools/cli/session_run.h"
 #include "engine/tools/study/study_order.h"
 
@@ -30,9 +28,5 @@ struct StudyProgress {
 /// \throws Error if the plan or the table has changed since the participant began, CheckFailed if a device's force was
 /// stopped
 [[nodiscard]] StudyProgress runStudy(const StudyRun& run, const study::StudyPlan& plan);
-
-/// Reads the file that describes the study in a participant's folder.
-/// \throws Error naming the file
-[[nodiscard]] nlohmann::json readStudyFile(const std::filesystem::path& participantFolder);
 
 } // namespace palp

@@ -50,11 +50,18 @@ void printLarge(const nlohmann::json& large)
         std::printf("  large deflection   linear, because %s\n", large["linear_because"].get<std::string>().c_str());
         return;
     }
-    std::printf(
-        "  large deflection   felt %s at this force, depth %s of the hand; linear %s; trusted to a deflection of "
-        "%s\n",
-        formatQuantity(large["felt_stiffness"], "N/m").c_str(), formatQuantity(large["depth"], "m").c_str(),
-        formatQuantity(large["depth_linear"], "m").c_str(), formatQuantity(large["trusted_deflection"], "m").c_str());
+    const auto        quantity = [&](const char* key, const char* unit) { return formatQuantity(large[key], unit); };
+    const std::string linear = quantity("depth_linear", "m"), trusted = quantity("trusted_deflection", "m");
+    if (large["depth"].is_null())
+        std::printf(
+            "  large deflection   not known at this force: trusted to a deflection of %s, which needs %s; linear, the "
+            "hand would be %s deep\n",
+            trusted.c_str(), quantity("trusted_force", "N").c_str(), linear.c_str());
+    else
+        std::printf(
+            "  large deflection   felt %s at this force, depth %s of the hand; linear %s; trusted to a deflection "
+            "of %s\n",
+            quantity("felt_stiffness", "N/m").c_str(), quantity("depth", "m").c_str(), linear.c_str(), trusted.c_str());
 }
 
 void printWindow(const nlohmann::json& window)

@@ -109,6 +109,14 @@ good 'the deformed cloud is a cloud' info 'a folder/deformed.ply'
 holds 'deflection'
 good 'touch a file' touch skin.ply --place 0,0,0.0015 --window 40mm --cells 32
 holds 'felt stiffness'
+dome='touch sample:ellipsoid --points 5000 --cells 32 --thickness 1mm --theory shell --large on --json'
+# shellcheck disable=SC2086
+{
+    good 'a dome that is pressed softly' $dome --force 20mN
+    ! grep -qE '"(depth|felt_stiffness)": null' out.txt && passed=$((passed + 1)) || complain 'a dome that is pressed softly has no depth'
+    good 'a dome that gives way' $dome --force 2N
+    [ "$(grep -cE '"(depth|felt_stiffness)": null' out.txt)" -eq 2 ] && passed=$((passed + 1)) || complain 'a dome that gives way is felt'
+}
 good 'a place off the surface' touch skin.ply --place 0,0,7mm --window 40mm --cells 32
 holds 'off the surface: the nearest place on it is touched'
 good 'touch as the paper' touch skin.ply --place 0,0,0.0015 --preset paper --window 40mm --cells 32 --json
