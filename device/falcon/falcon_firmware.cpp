@@ -35,7 +35,7 @@ std::vector<std::uint8_t> readFirmware(const std::filesystem::path& path)
     std::error_code failure;
     if (std::filesystem::exists(path, failure) && !std::filesystem::is_regular_file(path, failure))
         throw Error(path.string() + ": not a plain file; " + expected() + "; " + kAdvice);
-    std::ifstream file = openRegularFile(path);
+    InputFile file = openRegularFile(path);
 
     const std::uintmax_t size = std::filesystem::file_size(path, failure);
     if (failure) throw Error(path.string() + ": its size cannot be read: " + failure.message());

@@ -279,7 +279,7 @@ RepaintedPly formatRepaintedPly(std::ostream& stream, std::istream& original, st
 RepaintedPly repaintPly(const std::filesystem::path& original, const CloudReadSettings& readAs,
                         const PointCloud& painted, const std::filesystem::path& target)
 {
-    std::ifstream       file = openRegularFile(original);
+    InputFile           file = openRegularFile(original);
     const std::uint64_t size = sizeOfFile(original);
     RepaintedPly        result;
     writeFileWhole(target, [&](std::ostream& stream) {

@@ -28,7 +28,7 @@ LoadedCloud parseCloud(std::istream& stream, std::uint64_t size, const std::stri
 LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings& settings)
 {
     const CloudFormat   format = formatToRead(path).format;
-    std::ifstream       file   = openRegularFile(path);
+    InputFile           file   = openRegularFile(path);
     const std::uint64_t size   = sizeOfFile(path);
     return parseCloud(file, size, path.string(), format, settings);
 }

@@ -199,18 +199,42 @@ void keepMode(int handle, const std::filesystem::path& older)
 
 } // namespace
 
-std::ifstream openForReading(const std::filesystem::path& path)
+InputFile::Buffer::Buffer(const std::filesystem::path& path) : path_(path)
+{
+    errno = 0;
+    if (!open(path, std::ios::in | std::ios::binary))
+        throw Error(path.string() + ": cannot be read: " + reasonOfErrno());
+}
+
+InputFile::Buffer::int_type InputFile::Buffer::underflow()
+try {
+    return std::filebuf::underflow();
+} catch (const std::ios_base::failure& failure) {
+    throw Error(path_.string() + ": cannot be read to its end: " + failure.code().message());
+}
+
+std::streamsize InputFile::Buffer::xsgetn(char* to, std::streamsize count)
+try {
+    return std::filebuf::xsgetn(to, count);
+} catch (const std::ios_base::failure& failure) {
+    throw Error(path_.string() + ": cannot be read to its end: " + failure.code().message());
+}
+
+InputFile::InputFile(const std::filesystem::path& path) : std::istream(nullptr), buffer_(path)
+{
+    rdbuf(&buffer_);
+    exceptions(std::ios::badbit); // what the buffer throws goes on to the reader
+}
+
+InputFile openForReading(const std::filesystem::path& path)
 {
     std::error_code ignored;
     if (std::filesystem::is_directory(path, ignored))
         throw Error(path.string() + ": cannot be read: it is a folder; name a file in it");
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file) throw Error(path.string() + ": cannot be read: " + reasonOfErrno());
-    return file;
+    return InputFile(path);
 }
 
-std::ifstream openRegularFile(const std::filesystem::path& path)
+InputFile openRegularFile(const std::filesystem::path& path)
 {
     std::error_code ignored;
     if (std::filesystem::is_fifo(path, ignored))
@@ -229,8 +253,8 @@ std::uint64_t sizeOfFile(const std::filesystem::path& path)
 
 std::string readWhole(const std::filesystem::path& path, std::size_t most, const std::string& expected, Pipes pipes)
 {
-    std::ifstream in = pipes == Pipes::read ? openForReading(path) : openRegularFile(path);
-    std::string   text;
+    InputFile   in = pipes == Pipes::read ? openForReading(path) : openRegularFile(path);
+    std::string text;
     for (char part[65536]; text.size() <= most && in; text.append(part, std::size_t(in.gcount())))
         in.read(part, sizeof part);
     if (text.size() > most)

@@ -4,18 +4,46 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iosfwd>
+#include <istream>
 #include <string>
+#include <utility>
 
 namespace palp {
 
+/// A file that is read, in binary. A read that fails, as on a disk with an error, is no end of the file: it throws an Error that
+/// names the path.
+/// \thread one
+class InputFile : public std::istream {
+public:
+    /// \throws Error "PATH: cannot be read: REASON"
+    explicit InputFile(const std::filesystem::path& path);
+    InputFile(InputFile&& from) noexcept(false) : std::istream(std::move(from)), buffer_(std::move(from.buffer_))
+    {
+        set_rdbuf(&buffer_);
+    }
+
+private:
+    class Buffer : public std::filebuf {
+    public:
+        explicit Buffer(const std::filesystem::path& path);
+
+    protected:
+        int_type        underflow() override;
+        std::streamsize xsgetn(char* to, std::streamsize count) override;
+
+    private:
+        std::filesystem::path path_;
+    };
+    Buffer buffer_;
+};
+
 /// Opens a file for binary reading.
 /// \throws Error "PATH: cannot be read: REASON" (missing, a folder, no permission)
-[[nodiscard]] std::ifstream openForReading(const std::filesystem::path& path);
+[[nodiscard]] InputFile openForReading(const std::filesystem::path& path);
 
 /// Opens a file for binary reading whose size has to be known before.
 /// \throws Error as openForReading() does, and for a named pipe, which would wait for a writer
-[[nodiscard]] std::ifstream openRegularFile(const std::filesystem::path& path);
+[[nodiscard]] InputFile openRegularFile(const std::filesystem::path& path);
 
 /// Returns the size of a file [bytes].
 /// \throws Error naming the path if it is no regular file

@@ -261,7 +261,7 @@ NodeField parseNpy(std::istream& in, std::uint64_t size, const std::string& name
 
 NodeField readNpy(const std::filesystem::path& path)
 {
-    std::ifstream   in = openRegularFile(path);
+    InputFile       in = openRegularFile(path);
     std::error_code failure;
     const auto      size = std::filesystem::file_size(path, failure);
     if (failure) throw Error(path.string() + ": cannot be read: " + failure.message());

@@ -171,7 +171,7 @@ VolumeGrid readVolume(const std::filesystem::path& path, const VolumeSettings& s
     if (!isNpy && !isNifti)
         throw Error(path.string() + ": expected a volume in a file .npy, .nii or .nii.gz, found \"" + file +
                     "\"; nibabel (Python) and 3D Slicer convert others to .nii.gz");
-    std::ifstream       in   = openRegularFile(path);
+    InputFile           in   = openRegularFile(path);
     const std::uint64_t size = sizeOfFile(path);
     return parseVolume(in, size, path.string(), isNpy ? VolumeFormat::npy : VolumeFormat::nifti, settings);
 }

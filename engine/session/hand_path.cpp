@@ -360,7 +360,7 @@ HandPath parseHand(std::istream& in, const std::string& name)
 HandPath readHand(const std::filesystem::path& path)
 {
     if (path.extension() == ".npy") return handOf(readNpy(path), path.string());
-    std::ifstream in = openForReading(path);
+    InputFile in = openForReading(path);
     return parseHand(in, path.string());
 }
 

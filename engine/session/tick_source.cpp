@@ -100,7 +100,7 @@ public:
 
 private:
     std::string   name_;
-    std::ifstream in_;
+    InputFile     in_;
     Header        header_;
     std::uint64_t bytes_; ///< of the file, asked for after the header was read: a session may still write
 };

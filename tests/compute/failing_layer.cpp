@@ -58,7 +58,11 @@ namespace {
     CALL(vkWaitForFences)                                                                                              \
     CALL(vkQueueSubmit)                                                                                                \
     CALL(vkQueueWaitIdle)                                                                                              \
-    CALL(vkDeviceWaitIdle)
+    CALL(vkDeviceWaitIdle)                                                                                             \
+    CALL(vkCreateSwapchainKHR)                                                                                         \
+    CALL(vkGetSwapchainImagesKHR)                                                                                      \
+    CALL(vkAcquireNextImageKHR)                                                                                        \
+    CALL(vkQueuePresentKHR)
 
 enum class Call {
 #define PALPATE_NAME(name) name,
@@ -112,7 +116,7 @@ bool isDue(std::string_view name)
 {
     static const std::string_view only = setting("FAILING_LAYER_ONLY");
     if (!only.empty() && name != only) return false;
-    static const long at = std::atol(std::string(setting("FAILING_LAYER_AT")).c_str());
+    static const long at  = std::atol(std::string(setting("FAILING_LAYER_AT")).c_str());
     const bool        due = ++counted == at;
     if (due && setting("FAILING_LAYER_AS") == "crash") std::abort();
     return due;
@@ -126,7 +130,8 @@ bool isWait(Call call)
 
 bool saysLost(Call call)
 {
-    return isWait(call) || call == Call::vkQueueSubmit || call == Call::vkGetQueryPoolResults;
+    return isWait(call) || call == Call::vkQueueSubmit || call == Call::vkGetQueryPoolResults ||
+           call == Call::vkAcquireNextImageKHR || call == Call::vkQueuePresentKHR;
 }
 
 /// Returns what a call fails with; VK_SUCCESS: it goes on to the driver.
@@ -144,7 +149,7 @@ VkResult failureOf(Call call)
     }
     if (isLost && saysLost(call)) return VK_ERROR_DEVICE_LOST;
     if (!hangs) return VK_SUCCESS;
-    if (call == Call::vkWaitForFences) return VK_TIMEOUT; // at once: a test has no patience
+    if (call == Call::vkWaitForFences || call == Call::vkAcquireNextImageKHR) return VK_TIMEOUT; // no test has patience
     return call == Call::vkGetFenceStatus ? VK_NOT_READY : VK_SUCCESS;
 }
 
@@ -171,7 +176,7 @@ struct Hooked<call, VkResult(VKAPI_PTR*)(Object, Rest...)> {
             if (isLost && !wasLost) finishAll(object); // nothing works on after a loss
             return failure;
         }
-        if (hangs && (call == Call::vkQueueSubmit || isWait(call)))
+        if (hangs && (call == Call::vkQueueSubmit || call == Call::vkQueuePresentKHR || isWait(call)))
             return VK_SUCCESS; // a wait of a queue would not end
         PFN_vkVoidFunction next = nullptr;
         {

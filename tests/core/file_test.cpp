@@ -316,9 +316,25 @@ TEST_F(Files, ReadingGivesTheBytesUnchanged)
     const std::string bytes("a\r\n\0b", 5);
     writeFileWhole(folder_ / "a", [&](std::ostream& stream) { stream << bytes; });
 
-    std::ifstream file = openForReading(folder_ / "a");
+    InputFile file = openForReading(folder_ / "a");
 
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), bytes);
+}
+
+TEST_F(Files, AReadThatFailsIsNoEndOfTheFile)
+{
+    const char* const broken = "/proc/self/mem"; // nothing is mapped at its first byte: EIO
+    const std::string whole  = refusalOf([&] { static_cast<void>(readWhole(broken, 1 << 20, "a text")); });
+    EXPECT_TRUE(holds(whole, {broken, "cannot be read to its end", "Input/output error"})) << whole;
+    InputFile   lines = openForReading(broken);
+    std::string line;
+    EXPECT_THROW(std::getline(lines, line), Error);
+    InputFile blocks = openRegularFile(broken);
+    char      block[16];
+    EXPECT_THROW(blocks.read(block, sizeof block), Error);
+    InputFile moved = std::move(lines);
+    moved.clear();
+    EXPECT_THROW(static_cast<void>(moved.get()), Error);
 }
 
 TEST_F(Files, AMissingFileOrAFolderCannotBeRead)

@@ -31,15 +31,15 @@ arguments() { # of a command
 number() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\),*\$/\1/p" "$2" | head -n 1; }
 isnear() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a - b <= 0.01 * b && b - a <= 0.01 * b) }'; }
 
-# forces_are_good TICKS: each of so many ticks, or of fewer where that is "some", is there; its force is finite and at most
-# the 6 N of a session, its time a millisecond after the last.
+# forces_are_good TICKS: each of so many ticks, or of one and more where that is "some", is there; its force is finite and at
+# most the 6 N of a session, its time a millisecond after the last.
 forces_are_good() {
     "$palpate" export recorded --csv recorded.csv >/dev/null 2>&1 || return 1
     awk -F, -v all="$1" 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_x") x = n; next }
-        { for (n = x; n < x + 3; ++n) if ($n !~ /^[-+0-9.e]+$/ || $n > 6 || $n < -6) exit 1
-          if ($1 - ticks * 1e-3 > 1e-6 || ticks * 1e-3 - $1 > 1e-6) exit 1
+        { for (n = x; n < x + 3; ++n) if ($n !~ /^[-+0-9.e]+$/ || $n > 6 || $n < -6) bad = 1
+          if ($1 - ticks * 1e-3 > 1e-6 || ticks * 1e-3 - $1 > 1e-6) bad = 1
           ++ticks }
-        END { exit all != "some" && ticks != all }' recorded.csv
+        END { exit bad || !x || ticks < 1 || (all != "some" && ticks != all) }' recorded.csv
 }
 
 # judge COMMAND WHAT STATUS
@@ -50,6 +50,8 @@ judge() {
             complain "$2: exit $3 without a sentence: $(cat err.txt)"
         elif [ -s picture.png ]; then
             complain "$2: exit $3, and a picture"
+        elif [ -s recorded/ticks.npy ] && ! forces_are_good some; then
+            complain "$2: exit $3, and a bad tick"
         else
             pass
         fi
@@ -131,8 +133,15 @@ done
 # And to what a window makes for its pictures: it went on without images that could not be made, and asked for panels twice.
 case $commands in
 *view*)
-    for call in vkCreateImage vkCreateSampler vkCreateDescriptorSetLayout vkCreateFramebuffer vkCreateBuffer vkCreateSwapchainKHR; do
-        for at in 1 2; do FAILING_LAYER_ONLY=$call attempt view memory $at; done
+    for call in vkCreateImage vkCreateSampler vkCreateDescriptorSetLayout vkCreateFramebuffer vkCreateBuffer vkCreateSwapchainKHR vkGetSwapchainImagesKHR vkAcquireNextImageKHR vkQueuePresentKHR; do
+        for at in 1 2; do
+            rm -f count
+            FAILING_LAYER_ONLY=$call attempt view memory $at
+            { [ -s count ] && [ "$(cat count)" -ge 1 ] && pass; } || complain "view makes no call $call: does it fail?"
+        done
+    done
+    for as in lost hang; do
+        for call in vkAcquireNextImageKHR vkQueuePresentKHR; do FAILING_LAYER_ONLY=$call attempt view $as 3; done
     done
     ;;
 esac
@@ -146,12 +155,13 @@ compile() { # as if for the first time
     status=$?
     judge touch "touch, $*" $status
     [ $status -eq 0 ] || complain "touch, $*: exit $status"
+    [ "${1##*=}" -le "$(cat files)" ] || complain "touch, $*: it wrote $(cat files) times only"
 }
 if [ -z "$sanitizers" ]; then # which want to be loaded first
     compile FAILING_FILES_AT=0
     writes=$(cat files 2>/dev/null || echo 0)
     [ "$writes" -gt 2 ] || complain "the driver wrote its files $writes times only: where are they?"
-    for at in 1 2 3 $((writes / 2)) "$writes"; do
+    for at in 1 2 3 $((writes / 2)); do # another thread writes, perhaps fewer times
         for way in AT ONCE; do compile FAILING_FILES_$way="$at"; done
     done
 fi

@@ -4,11 +4,13 @@
 //     FAILING_FILES_AT=n        the n-th such call, counted from 1, and all later ones: a disk that is full
 //     FAILING_FILES_ONCE=n      the n-th alone: a disk that has an error
 //     FAILING_FILES_COUNT=FILE  how many there were so far
+//     FAILING_FILES_READ=FOLDER with this, what is counted and fails are reads of files below a folder, in place of changes
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -43,9 +45,17 @@ void report(long calls)
     if (file >= 0) static_cast<void>(real(file, text, size_t(size), 0) == size);
 }
 
-/// Counts a call, and returns whether it fails; errno says why.
-bool fails()
+/// Returns the folder below which reads fail in place of changes; null: there is none.
+const char* folderOfReads()
 {
+    static const char* const folder = std::getenv("FAILING_FILES_READ");
+    return folder;
+}
+
+/// Counts a call, and returns whether it fails; errno says why.
+bool fails(bool reads = false)
+{
+    if (reads != (folderOfReads() != nullptr)) return false;
     static const long at = setting("FAILING_FILES_AT"), once = setting("FAILING_FILES_ONCE");
     const long        n = ++counted;
     report(n);
@@ -57,6 +67,18 @@ bool fails()
 bool makesFile(int flags)
 {
     return (flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE;
+}
+
+/// Returns whether a handle is of a file below that folder.
+bool isRead(int handle)
+{
+    if (!folderOfReads() || handle <= 2) return false;
+    char          name[64], path[4096];
+    const ssize_t size =
+        (std::snprintf(name, sizeof name, "/proc/self/fd/%d", handle), ::readlink(name, path, sizeof path - 1));
+    if (size <= 0) return false;
+    path[size] = 0;
+    return std::strncmp(path, folderOfReads(), std::strlen(folderOfReads())) == 0;
 }
 
 /// What a program says to a terminal or a pipe is not meant, nor what it is started with writes to.
@@ -87,6 +109,14 @@ ssize_t pwrite64(int handle, const void* bytes, size_t count, off64_t at)
 {
     static const auto real = next<ssize_t(int, const void*, size_t, off64_t)>("pwrite64");
     return isFile(handle) && fails() ? -1 : real(handle, bytes, count, at);
+}
+
+ssize_t read(int handle, void* bytes, size_t count)
+{
+    static const auto real = next<ssize_t(int, void*, size_t)>("read");
+    if (!isRead(handle)) return real(handle, bytes, count);
+    constexpr size_t kMost = 512; // a system may give less than was asked for: small files take many calls too
+    return fails(true) ? -1 : real(handle, bytes, count < kMost ? count : kMost);
 }
 
 int fsync(int handle)

@@ -54,17 +54,16 @@ Answers answersIn(const std::vector<std::string>& folders)
         for (const auto& participant : participantsIn(folder)) {
             if (!seen.insert(std::filesystem::weakly_canonical(participant)).second)
                 throw Error(participant.string() + ": expected each participant once, found this one twice");
-            const Json file = study::readStudyFile(participant);
-            if (!plan.empty() && file["plan"] != plan)
+            const study::StudyFile file = study::readStudyFile(participant);
+            if (!plan.empty() && file.plan != plan)
                 throw Error(participant.string() + ": expected participants of one study, found another plan than that "
                                                    "of the first; analyse each plan's participants by themselves");
-            plan            = file["plan"];
+            plan            = file.plan;
             const auto rows = study::readTrials(participant / "trials.csv");
             all.rows.insert(all.rows.end(), rows.begin(), rows.end());
             all.participants += !rows.empty();
-            const Json felt = file.value("felt_stiffness_N_per_m", Json::object());
-            for (const auto& [name, stiffness] : felt.items())
-                if (stiffness.is_number()) all.stiffnesses[name] = stiffness;
+            for (const auto& [condition, stiffness] : file.feltStiffness)
+                if (stiffness) all.stiffnesses[condition] = *stiffness;
         }
     return all;
 }

@@ -42,8 +42,8 @@ struct Felt {
 
     explicit Felt(const Scene& scene) : loaded(loadObject(scene)) {}
 
-    /// Returns the stiffness at the scene's place, as the device renders it [N/m]; null where nothing can be felt.
-    [[nodiscard]] Json stiffness(const Scene& scene) const
+    /// Returns the stiffness at the scene's place, as the device renders it [N/m]; nothing where nothing can be felt.
+    [[nodiscard]] std::optional<double> stiffness(const Scene& scene) const
     {
         try {
             const HandPlace place = handPlace(scene, loaded.object);
@@ -51,7 +51,7 @@ struct Felt {
             const Patch     patch = deform(loaded.object, {place.point, place.outward}, scene.patch, host);
             return std::min(patch.feltStiffness, scene.stiffnessCap / scene.workspaceScale);
         } catch (const Error&) { // a hand from a file may work elsewhere
-            return nullptr;
+            return std::nullopt;
         }
     }
 };
@@ -153,10 +153,9 @@ private:
 };
 
 /// Returns the hand without the port of its device, which may change from day to day.
-std::string wordOf(const Json& value)
+std::string wordOf(const std::string& hand)
 {
-    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-    return text.substr(0, text.find('@'));
+    return hand.substr(0, hand.find('@'));
 }
 
 /// Returns the folders of a study's participants; none where the study is new.
@@ -174,38 +173,39 @@ std::vector<std::filesystem::path> othersIn(const std::filesystem::path& study)
 /// Writes the study's file once; later runs must agree with it.
 void Sitting::agree()
 {
-    Json now{{"format", 1},
-             {"participant", run_.participant},
-             {"title", plan_.title},
-             {"plan", plan_.canonical},
-             {"hand", run_.session.hand.hand},
-             {"clock", run_.session.clock}};
-    for (std::size_t k = 0; k < felt_.size(); ++k) now["clouds"].push_back(fingerprint(felt_[k].loaded.object.cloud()));
+    const std::filesystem::path path = folder_ / study::kStudyFile;
+    study::StudyFile            now{.participant = run_.participant,
+                                    .title       = plan_.title,
+                                    .plan        = plan_.canonical,
+                                    .hand        = run_.session.hand.hand,
+                                    .clock       = run_.session.clock,
+                                    .version     = PALPATE_VERSION " " PALPATE_COMMIT};
+    for (const Felt& felt : felt_) now.clouds.push_back(fingerprint(felt.loaded.object.cloud()));
     std::error_code ignored;
-    if (std::filesystem::exists(folder_ / study::kStudyFile, ignored)) {
-        const Json before = study::readStudyFile(folder_);
-        for (const char* key : {"participant", "plan", "clouds"})
-            if (before[key] != now[key])
-                throw Error((folder_ / study::kStudyFile).string() +
-                            ": expected the plan that this participant began with, " + "found that " + run_.plan +
-                            " or a scene of it has changed since; choose another --out");
-        for (const char* key : {"hand", "clock"})
-            if (before.contains(key) && wordOf(before[key]) != wordOf(now[key])) // earlier versions did not keep them
-                throw Error((folder_ / study::kStudyFile).string() + ": expected the --" + key +
-                            " that this participant began with, " + before[key].dump() + ", found " + now[key].dump() +
-                            "; trials could not be compared; choose another --out");
+    if (std::filesystem::exists(path, ignored)) {
+        const study::StudyFile before = study::readStudyFile(folder_);
+        if (before.participant != now.participant || before.plan != now.plan || before.clouds != now.clouds)
+            throw Error(path.string() + ": expected the plan that this participant began with, found that " +
+                        run_.plan + " or a scene of it has changed since; choose another --out");
+        const auto demandSame = [&](const char* option, const std::optional<std::string>& was,
+                                    const std::optional<std::string>& is) {
+            if (was && wordOf(*was) != wordOf(*is))
+                throw Error(path.string() + ": expected the " + option + " that this participant began with, \"" +
+                            *was + "\", found \"" + *is + "\"; trials could not be compared; choose another --out");
+        };
+        demandSame("--hand", before.hand, now.hand);
+        demandSame("--clock", before.clock, now.clock);
         return;
     }
     for (const auto& other : othersIn(run_.out))
-        if (study::readStudyFile(other)["plan"] != now["plan"])
+        if (study::readStudyFile(other).plan != now.plan)
             throw Error((other / study::kStudyFile).string() + ": expected participants of one plan in " +
                         run_.out.string() + ", found that " + run_.plan +
                         " or a scene of it has changed since; choose another --out");
     makeFolder(folder_);
     for (std::size_t k = 0; k < felt_.size(); ++k)
-        now["felt_stiffness_N_per_m"][plan_.conditions[k].name] = felt_[k].stiffness(plan_.conditions[k].scene);
-    now["version"] = PALPATE_VERSION " " PALPATE_COMMIT;
-    writeFileWhole(folder_ / study::kStudyFile, [&](std::ostream& file) { file << jsonText(now); });
+        now.feltStiffness[plan_.conditions[k].name] = felt_[k].stiffness(plan_.conditions[k].scene);
+    writeFileWhole(path, [&](std::ostream& file) { file << study::studyJson(now); });
 }
 
 /// Checks that every row is the trial that the order has there.

@@ -212,8 +212,8 @@ double Probe::forceRange() const noexcept
 
 bool holdsProbes(const std::filesystem::path& file)
 {
-    std::ifstream stream = openForReading(file);
-    std::string   line;
+    InputFile   stream = openForReading(file);
+    std::string line;
     for (int n = 0; n < 100 && std::getline(stream, line); ++n) {
         if (line.size() > 4096) return false; // no line of a header
         if (!isSaid(line)) continue;

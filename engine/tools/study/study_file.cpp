@@ -2,27 +2,76 @@
 
 #include <cstddef>
 
-#include "engine/core/contract.h"
+#include <nlohmann/json.hpp>
+
 #include "engine/core/file.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_object.h"
 
 namespace palp::study {
+namespace {
 
 using Json = nlohmann::json;
 
-Json parseStudyFile(std::string_view text, const std::string& what)
+constexpr const char* kFelt = "felt_stiffness_N_per_m";
+
+std::optional<std::string> textIn(const JsonObject& file, const char* key)
 {
-    Json       file = tooDeepAt(text) ? Json() : Json::parse(text, nullptr, false);
-    const auto has  = [&](const char* key, bool (Json::*isRight)() const noexcept) {
-        return file.contains(key) && (file[key].*isRight)();
-    };
-    if (!file.is_object() || file.value("format", Json()) != 1 || !has("plan", &Json::is_string) ||
-        !has("participant", &Json::is_string) || !has("clouds", &Json::is_array))
-        throw Error(what + ": expected a file of palpate study, found something else");
-    return file;
+    return file.has(key) ? std::optional(file.text(key)) : std::nullopt;
 }
 
-Json readStudyFile(const std::filesystem::path& participantFolder)
+std::vector<std::string> cloudsIn(const JsonObject& file)
+{
+    if (file.kind("clouds") != JsonObject::Kind::list) file.refuse("clouds", "a list of texts");
+    const Json               list = Json::parse(file.json("clouds"));
+    std::vector<std::string> clouds;
+    for (const Json& cloud : list) {
+        if (!cloud.is_string()) file.refuse("clouds", "a list of texts");
+        clouds.push_back(cloud);
+    }
+    return clouds;
+}
+
+std::map<std::string, std::optional<double>> feltIn(const JsonObject& file)
+{
+    std::map<std::string, std::optional<double>> felt;
+    if (!file.has(kFelt)) return felt;
+    if (file.kind(kFelt) != JsonObject::Kind::object) file.refuse(kFelt, "an object of numbers");
+    const Json object = Json::parse(file.json(kFelt));
+    for (const auto& [condition, stiffness] : object.items()) {
+        if (!stiffness.is_number() && !stiffness.is_null()) file.refuse(kFelt, "an object of numbers");
+        felt[condition] = stiffness.is_number() ? std::optional<double>(stiffness) : std::nullopt;
+    }
+    return felt;
+}
+
+} // namespace
+
+StudyFile parseStudyFile(std::string_view text, const std::string& what)
+{
+    const JsonObject file = JsonObject::parse(text, what);
+    static_cast<void>(file.wholeNumber("format", 1, 1));
+    return {.participant   = file.text("participant"),
+            .title         = textIn(file, "title").value_or(""),
+            .plan          = file.text("plan"),
+            .clouds        = cloudsIn(file),
+            .hand          = textIn(file, "hand"),
+            .clock         = textIn(file, "clock"),
+            .feltStiffness = feltIn(file),
+            .version       = textIn(file, "version").value_or("")};
+}
+
+std::string studyJson(const StudyFile& file)
+{
+    Json json{{"format", 1},           {"participant", file.participant}, {"title", file.title},    {"plan", file.plan},
+              {"clouds", file.clouds}, {kFelt, Json::object()},           {"version", file.version}};
+    if (file.hand) json["hand"] = *file.hand;
+    if (file.clock) json["clock"] = *file.clock;
+    for (const auto& [condition, stiffness] : file.feltStiffness)
+        json[kFelt][condition] = stiffness ? Json(*stiffness) : Json();
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+StudyFile readStudyFile(const std::filesystem::path& participantFolder)
 {
     constexpr std::size_t       kLargest = std::size_t(16) << 20; // [bytes]
     const std::filesystem::path path     = participantFolder / kStudyFile;
