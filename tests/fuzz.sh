@@ -75,7 +75,8 @@ for format in $formats; do
         "$build/seeds/$format" "tests/fuzz/found/$format" >"$build/$format.log" 2>&1; then
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$format.log")
         total=$((total + runs))
-        printf '%-10s %10s executions, corpus of %s\n' "$format" "$runs" "$(ls "$build/corpus/$format" | wc -l)"
+        printf '%s\t%s\t%s\n' "$format" "$runs" "$(git rev-parse --short HEAD 2>/dev/null)" >>"$build/executions.tsv"
+        printf '%-12s %10s executions, corpus of %s\n' "$format" "$runs" "$(ls "$build/corpus/$format" | wc -l)"
     else
         failed=1
         echo "$format: FAILED, the input is kept as $build/$format-*"
@@ -85,4 +86,8 @@ for format in $formats; do
 done
 rmdir tests/fuzz/found 2>/dev/null || true
 echo "$total executions in all"
+if [ -s "$build/executions.tsv" ]; then
+    echo "of all runs in this folder ($build/executions.tsv):"
+    awk -F'\t' '{ sum[$1] += $2; all += $2 } END { for (format in sum) printf "%-12s %10d\n", format, sum[format]; printf "%-12s %10d\n", "all", all }' "$build/executions.tsv" | sort
+fi
 exit $failed

@@ -4,6 +4,7 @@
 # programs and libraries.
 set -u
 command -v readelf >/dev/null 2>&1 || { echo 'readelf is missing (package binutils)'; exit 77; }
+[ $# -gt 0 ] || { echo 'expected files'; exit 2; }
 bad=0
 complain() { echo "$*"; bad=1; }
 for file; do

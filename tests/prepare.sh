@@ -73,7 +73,7 @@ check 'the tests after the demo' 0 'testing' env PALPATE_BUILD="$place/build" sh
 calls 'the tests after the demo are built' '-DPALPATE_TESTS=ON'
 
 # The gate of a release lists its steps, goes on after one that fails, and says so at its end.
-for name in plain validation 'fuzz replay' soak install package asan tsan compiler 'second driver' performance; do
+for name in plain validation 'fuzz replay' fuzzers valgrind soak install package asan tsan compiler 'second driver' performance; do
     check "the gate has the step $name" 0 "would run $name:" sh tests/run.sh --all --dry-run
 done
 check 'the gate without a last release' 0 'skipped, no --release' sh tests/run.sh --all --dry-run

@@ -104,6 +104,7 @@ release_gate() {
     step plain '' gate_plain -LE "$slow" -E '^(fuzz|install|soak)$' "$@"
     step validation '' gate_tests "$top" -L "$slow" "$@"
     step 'fuzz replay' '' gate_tests "$top" -R '^fuzz$'
+    step fuzzers '' sh tests/fuzz.sh --minutes 1
     step valgrind '' sh tests/valgrind.sh
     step soak '' "$top/bin/palp_soak" --seed "$(date +%Y%m%d)" --seconds 60 --scenes samples/scenes
     step install '' gate_tests "$top" -R '^install$'

@@ -15,7 +15,9 @@ namespace {
 void check(const palp::BridgeBytes& report)
 {
     palp::BridgeAnswer answer;
-    if (palp::decode(report, answer) != palp::BridgeVerdict::good) return;
+    const bool         good = palp::decode(report, answer) == palp::BridgeVerdict::good;
+    ++(good ? palp::fuzzVerdicts.accepted : palp::fuzzVerdicts.refused);
+    if (!good) return;
     palp::fuzzExpect(
         std::isfinite(glm::length(answer.position) + glm::length(answer.velocity) + glm::length(answer.rendered)));
     palp::fuzzExpect(std::abs(glm::length(answer.orientation) - 1) < 1e-2 && answer.buttonCount <= 32);

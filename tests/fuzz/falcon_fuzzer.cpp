@@ -18,6 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             palp::fuzzExpect(reply->homedLegs < 8 && reply->grip < 16);
         }
     }
+    ++(replies > 0 ? palp::fuzzVerdicts.accepted : palp::fuzzVerdicts.refused);
     palp::fuzzExpect(replies * 16 + parser.skipped() <= size);
 
     // Whatever a packet to the arm says: silenced, it does not push.

@@ -152,14 +152,24 @@ def capi(count):
     return b"s" + b"".join(struct.pack("<4d4fBB", 1e-3, 4e-3, 4e-3, 1e-3, 0, 0, 0, 0, 0, 0) for n in range(count))
 
 
+def bridge(report):
+    """A report with its checksum: CRC-16 of CCITT, low byte first."""
+    total = 0xFFFF
+    for byte in report:
+        total ^= byte << 8
+        for _ in range(8):
+            total = (total << 1 ^ 0x1021 if total & 0x8000 else total << 1) & 0xFFFF
+    return report + struct.pack("<H", total)
+
+
 FORMATS = {
     "ply": ply, "pcd": pcd, "text": text, "obj": obj, "stl": stl, "glb": glb, "volume": volume, "vtk": vtk, "vtk_xml": vtk_xml,
     "npy": lambda count: npy([1.0] * (count // 2 * 2), (2, count // 2)),
     "npy_cloud": lambda count: npy([value for p in points(count) for value in p], (count, 4)),
     "problem": problem, "scene": lambda count: commented(SCENE, count), "plan": plan, "hunt": hunt, "trials": trials,
     "hand": hand, "recording": recording, "haply": haply, "capi": capi,
-    "bridge": lambda count: (b"\x01PB\x11\x01\x00\x06\x00" + bytes(56)) * count,
-    "falcon": lambda count: "<AAAABBBBPPPPADA>" * count,
+    "bridge": lambda count: bridge(bytes([1]) + b"PB\x11\x01\x00\x06\x00" + bytes(54)) * count,
+    "falcon": lambda count: "<AAAABBBBPPPPDA>" * count,
     "calibration": lambda count: (json.dumps({"format": "palpate falcon calibration 1", "serial": "FZ1", "counts_per_torque": 4321.5,
                                               "arm_kg": 0.213, "date": "2026-11-22"}) + "\0") * (count // 8),
     "marker": lambda count: "trial of the second block\0" * count,

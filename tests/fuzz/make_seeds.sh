@@ -133,8 +133,8 @@ printf 's{"format": 2, "clock": "virtual", "solver": "host", "command": "palpate
 printf 's{"format": 1, "clock": "real", "device": "host", "command": "palpate", "scene": {"cloud": "sample:sheet"}}' >recording/first
 printf 'm{"time": 0.5, "text": "a"}\n{"time": 1, "text": "b\\u0001"}\n{"ti' >recording/markers
 
-printf '<AAAABBBBPPPPADA><AAAABBBBPPPPDDA>gar<bage<AAAABBBBPPPPADA><AAAA' >falcon/stream
-printf '<AAAAAAAAAAAAAAA>' >falcon/zero
+printf '<AAAABBBBPPPPDA><AAAABBBBPPPP\261A>gar<bage<AAAABBBBPPPPDA><AAAA' >falcon/stream
+printf '<AAAAAAAAAAAAAA>' >falcon/zero
 
 printf '# a comment\nprobe,x,y,z,nx,ny,nz,time [ms],depth [mm],force [N],other\na,0,0,0,0,0,1,0,0,0,x\na,0,0,0,0,0,1,10,0.5,0.1,x\na,0,0,0,0,0,1,20,1,0.25,x\na,0,0,0,0,0,1,30,1.5,0.5,x\na,0,0,0,0,0,1,40,2,0.9,x\n' >probes/timed
 printf 'depth,force\n0,0\n1e-4,.1\n2e-4,.2\n3e-4,.3\n4e-4,.4\n' >probes/plain

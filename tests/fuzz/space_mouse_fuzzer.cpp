@@ -15,8 +15,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const auto report                   = rest.subspan(1, std::min<std::size_t>(rest[0], rest.size() - 1));
         rest                                = rest.subspan(1 + report.size());
         const palp::SpaceMouseCounts before = counts;
-        if (!palp::takeSpaceMouseReport(report, counts))
-            palp::fuzzExpect(counts.axes == before.axes && counts.buttons == before.buttons);
+        const bool                   taken  = palp::takeSpaceMouseReport(report, counts);
+        ++(taken ? palp::fuzzVerdicts.accepted : palp::fuzzVerdicts.refused);
+        if (!taken) palp::fuzzExpect(counts.axes == before.axes && counts.buttons == before.buttons);
         for (const int axis : counts.axes) palp::fuzzExpect(std::abs(axis) <= palp::kMostSpaceMouseCounts);
     }
     return 0;

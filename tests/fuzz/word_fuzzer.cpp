@@ -31,7 +31,8 @@ void read(char reader, const std::string& word)
         palp::fuzzExpect(palp::parseHaplyPath(word).port > 0);
         break;
     case 'l':
-        if (const auto line = palp::parseBridgeLine(word)) palp::fuzzExpect(!line->place.empty() || line->port > 0);
+        if (const auto line = palp::parseBridgeLine(word))
+            palp::fuzzExpect(!line->place.empty() && (line->kind == palp::BridgeLine::Kind::udp) == (line->port > 0));
         break;
     case 'r': {
         const palp::Relaxation read = palp::parseRelaxation(word, "fuzz");
