@@ -5,19 +5,24 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <random>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
 #include <sched.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/socket.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -380,6 +385,43 @@ TEST_F(GuardianTest, AProgramThatMayStartNoProcessIsToldSo)
         return 5;
     };
     EXPECT_EQ(inChild(act), 0);
+}
+
+/// Keeps this process and its children from a call of the system, as a sandbox does.
+/// \return whether that worked
+bool forbid(long call, int error)
+{
+    sock_filter      rules[] = {BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),
+                                BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, unsigned(call), 0, 1),
+                                BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | unsigned(error)),
+                                BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW)};
+    const sock_fprog program{std::size(rules), rules};
+    return prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &program) == 0;
+}
+
+TEST_F(GuardianTest, AProgramWhoseSystemExecutesNothingOrGivesNoFileInMemoryIsToldSo)
+{
+    struct Case {
+        long        call;
+        int         error;
+        const char* part;
+    };
+    for (const auto& [call, error, part] :
+         {Case{SYS_execve, EACCES, "starting it: "}, Case{SYS_execve, ENOEXEC, "starting it: "},
+          Case{SYS_memfd_create, EPERM, "a file in memory: "}, Case{SYS_ftruncate, EPERM, "its memory: "}}) {
+        const auto act = [&] {
+            int ends[2];
+            if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0 || !forbid(call, error)) return 3;
+            try {
+                const Guardian guardian({.fd = ends[0]}, kFalconZero, "a Falcon");
+            } catch (const Error& refused) {
+                const std::string said = refused.what();
+                return said.find(std::string(part) + std::strerror(error)) != std::string::npos ? 0 : 4;
+            }
+            return 5;
+        };
+        EXPECT_EQ(inChild(act), 0) << part << std::strerror(error);
+    }
 }
 
 /// Sends its guardian, a program's only child, a signal.

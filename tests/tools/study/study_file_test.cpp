@@ -1,0 +1,62 @@
+// Tests of study.json: what is written is read, files of version 0.1.0 too, and every mistake is named.
+#include "engine/tools/study/study_file.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+
+namespace palp::study {
+namespace {
+
+TEST(StudyFiles, WhatIsWrittenIsRead)
+{
+    const StudyFile written{.participant   = "P01",
+                            .title         = "Which is \"stiffer\"?\n",
+                            .plan          = R"({"title": "t"})",
+                            .clouds        = {"0a", "1b"},
+                            .hand          = "falcon@3",
+                            .clock         = "real",
+                            .feltStiffness = {{"SOFT", 300.25}, {"AIR", std::nullopt}},
+                            .version       = "0.2.0 abc"};
+    const StudyFile read = parseStudyFile(studyJson(written), "study.json");
+
+    EXPECT_EQ(read.participant, written.participant);
+    EXPECT_EQ(read.title, written.title);
+    EXPECT_EQ(read.plan, written.plan);
+    EXPECT_EQ(read.clouds, written.clouds);
+    EXPECT_EQ(read.hand, written.hand);
+    EXPECT_EQ(read.clock, written.clock);
+    EXPECT_EQ(read.feltStiffness, written.feltStiffness);
+    EXPECT_EQ(read.version, written.version);
+}
+
+TEST(StudyFiles, OlderOnesNameNeitherHandNorClock)
+{
+    const StudyFile read =
+        parseStudyFile(R"({"format": 1, "participant": "p", "plan": "{}", "clouds": ["0"]})", "study.json");
+    EXPECT_EQ(read.participant, "p");
+    EXPECT_FALSE(read.hand || read.clock);
+    EXPECT_TRUE(read.feltStiffness.empty());
+}
+
+TEST(StudyFiles, AMistakeIsNamed)
+{
+    struct Case {
+        const char *text, *word;
+    };
+    for (const auto& [text, word] :
+         {Case{R"({"format": 2, "participant": "p", "plan": "{}", "clouds": []})", "\"format\""},
+          Case{R"({"format": 1, "plan": "{}", "clouds": []})", "\"participant\""},
+          Case{R"({"format": 1, "participant": "p", "plan": {}, "clouds": []})", "\"plan\""},
+          Case{R"({"format": 1, "participant": "p", "plan": "{}", "clouds": [1]})", "\"clouds\""},
+          Case{R"({"format": 1, "participant": "p", "plan": "{}", "clouds": "0"})", "\"clouds\""},
+          Case{R"({"format": 1, "participant": "p", "plan": "{}", "clouds": [], "felt_stiffness_N_per_m": {"a": "1"}})",
+               "\"felt_stiffness_N_per_m\""},
+          Case{"[]", "object"}, Case{"{", "line 1"}}) {
+        const std::string said = refusalOf([&] { static_cast<void>(parseStudyFile(text, "P/study.json")); });
+        EXPECT_TRUE(holds(said, {"P/study.json", word})) << said;
+    }
+}
+
+} // namespace
+} // namespace palp::study
