@@ -14,8 +14,8 @@ usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- 
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan; those that run the
                  same code again are left out: the pages' commands, validation of shaders
   --tsan         the same under ThreadSanitizer, in build/tsan, without the long ones that start no thread
-  --all          what a release has to pass: those three builds, validation of the shaders, fuzzing's replay, valgrind, a
-                 minute of the soak, the other compiler, installation and packages, a second driver and the performance;
+  --all          what a release has to pass: those three builds, validation of the shaders, fuzzing and its replay, valgrind,
+                 a minute of the soak, the other compiler, installation and packages, a second driver and the performance;
                  ends with a table. Exits with 77 if a step was skipped
   --resume       with --all: what this same commit has passed in a gate that was stopped or failed is not run again, but
                  for the second driver and the performance

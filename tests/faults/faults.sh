@@ -160,6 +160,18 @@ every_call() {
 if [ -z "$sanitizers" ]; then
     every_call ''
     every_call "$work"
+    # A participant goes on while any read fails: the rows that are saved stay, also where the program says that all is well.
+    sed 's/"repetitions": 1,//; s/"tasks"/"repetitions": 2, "tasks"/' plan.json >plan2.json
+    printf '\n2\n' | "$palpate" study plan2.json --participant P1 --clock virtual --out begun >/dev/null 2>&1
+    [ "$(wc -l <begun/P1/trials.csv)" -eq 2 ] || complain 'no study was begun'
+    n=1
+    while [ $n -le 30 ]; do
+        rm -rf goes_on && cp -r begun goes_on
+        (export LD_PRELOAD="$failing_files" FAILING_FILES_READ="$work" FAILING_FILES_ONCE=$n
+            exec "$palpate" study plan2.json --participant P1 --clock virtual --out goes_on) >out.txt 2>err.txt </dev/null
+        head -n 2 goes_on/P1/trials.csv | cmp -s - begun/P1/trials.csv && pass || complain "a study that goes on, read $n fails: its row is lost"
+        n=$((n + 1))
+    done
 fi
 
 mkdir small locked
