@@ -69,6 +69,7 @@ EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformati
     std::ostringstream what;
     what << name << ", " << ticks << " ticks, an answer each " << every << ", troubles of the solver " << solverRate;
     report.what = what.str();
+    report.hand = name.ends_with("wild") ? "wild" : name;
 
     for (std::uint64_t n = 0; n < ticks && !report.wrong; ++n) {
         const double dt = clock.step();

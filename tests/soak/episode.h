@@ -13,6 +13,7 @@ struct EpisodeReport {
     std::uint64_t              ticks    = 0;
     std::uint64_t              pressing = 0; ///< ticks with a force
     std::uint64_t              troubles = 0; ///< of the device, the clock and the files
+    std::string                hand;         ///< one of kHands
     std::string                what;         ///< the hand and its rates, for a person
     std::optional<std::string> wrong{};      ///< the first thing that must not be
 };

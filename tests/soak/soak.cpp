@@ -12,6 +12,7 @@
 #include "engine/session/deformation.h"
 #include "engine/session/shipped_scenes.h"
 #include "tests/soak/episode.h"
+#include "tests/soak/soak_hand.h"
 
 namespace palp::soak {
 namespace {
@@ -89,9 +90,29 @@ Options parsed(int count, char** words)
     return options;
 }
 
+/// Ticks with a force of each hand.
+using Pressed = std::map<std::string, std::uint64_t>;
+
+/// Says how long each hand pressed.
+/// \return false if one of them never did although there were sessions enough: nobody attacks with it any more
+bool eachHandPressed(Pressed& pressed, std::uint64_t sessions)
+{
+    constexpr std::uint64_t kEnough = 500; // a hand has one session of ten
+    bool                    each    = true;
+    std::cout << "ticks with a force by the hand:";
+    for (const char* const hand : kHands) {
+        std::cout << ' ' << hand << ' ' << pressed[hand];
+        each = each && pressed[hand] > 0;
+    }
+    std::cout << std::endl;
+    if (!each && sessions >= kEnough) std::cout << "a hand never pressed: see openHand()" << std::endl;
+    return each || sessions < kEnough;
+}
+
 /// Runs a batch.
 /// \return true if nothing was wrong
-bool runBatch(const Options& options, const std::vector<ShippedScene>& scenes, std::uint64_t number, Totals& totals)
+bool runBatch(const Options& options, const std::vector<ShippedScene>& scenes, std::uint64_t number, Totals& totals,
+              Pressed& pressed)
 {
     Chance              chance(options.seed * 0x9e3779b97f4a7c15U + number);
     const ShippedScene& shipped = scenes[number % scenes.size()];
@@ -103,6 +124,7 @@ bool runBatch(const Options& options, const std::vector<ShippedScene>& scenes, s
     for (int n = 0; n < options.sessions; ++n) {
         const EpisodeReport report = runEpisode(scene, object, deformation, solver, chance.bits());
         totals.add({0, 1, report.ticks, report.pressing, report.troubles, 0});
+        pressed[report.hand] += report.pressing;
         if (!report.wrong) continue;
         std::cout << "FOUND in scene " << shipped.name << ", session " << n << " (" << report.what
                   << "): " << *report.wrong << "\n  again: palp_soak --seed " << options.seed << " --sessions "
@@ -140,17 +162,20 @@ std::uint64_t resumed(const Options& options, Totals& totals)
 
 int run(const Options& options)
 {
-    using Clock       = std::chrono::steady_clock;
-    const auto scenes = scenesIn(options.scenes);
-    const auto began  = Clock::now();
-    Totals     all;
-    bool       good = false;
-    auto       next = options.batch >= 0 ? std::uint64_t(options.batch) : resumed(options, all);
+    using Clock          = std::chrono::steady_clock;
+    const auto    scenes = scenesIn(options.scenes);
+    const auto    began  = Clock::now();
+    Totals        all;
+    Pressed       pressed;
+    bool          good = false;
+    std::uint64_t here = 0; // sessions of this run
+    auto          next = options.batch >= 0 ? std::uint64_t(options.batch) : resumed(options, all);
     std::cout << "seed " << options.seed << ", from batch " << next << " on" << std::endl;
     do {
         Totals one;
-        good = runBatch(options, scenes, next, one);
+        good = runBatch(options, scenes, next, one, pressed);
         all.add(one);
+        here += one.sessions;
         if (!good) break; // it is not noted, so that the next run begins with it
         if (!options.state.empty() && options.batch < 0)
             std::ofstream(options.state, std::ios::app)
@@ -161,7 +186,8 @@ int run(const Options& options)
     } while (options.batch < 0 && std::chrono::duration<double>(Clock::now() - began).count() < options.seconds);
     std::cout << all << std::endl;
     if (all.pressing == 0) std::cout << "no session had a force: nothing was tested" << std::endl;
-    return good && all.pressing > 0 ? 0 : 1;
+    const bool each = eachHandPressed(pressed, here);
+    return good && each && all.pressing > 0 ? 0 : 1;
 }
 
 } // namespace
