@@ -116,17 +116,42 @@ std::vector<const char*> wordsOf(int argumentCount, char** arguments)
     return words;
 }
 
-bool isForWantOfThreads(const std::exception& error)
+/// Returns whether the system gave this as the reason.
+bool isFor(std::errc reason, const std::exception& error)
 {
     const auto* const system = dynamic_cast<const std::system_error*>(&error);
-    return system && system->code() == std::errc::resource_unavailable_try_again;
+    return system && system->code() == reason;
 }
 
 /// Ends the program without its exit handlers: an allocation that failed inside a driver may have left locks for which
 /// the driver's handlers would wait.
-[[noreturn]] void leaveWithoutMemory()
+[[noreturn]] void leaveWithoutMemory() noexcept
 {
-    std::_Exit(complain("out of memory; try fewer cells or points", kBadInput)); // std::cerr has no buffer
+    constexpr std::string_view kSentence = "palpate: out of memory; try fewer cells or points\n";
+    static_cast<void>(::write(STDERR_FILENO, kSentence.data(), kSentence.size()) == 0); // it takes no memory
+    std::_Exit(kBadInput);
+}
+
+std::terminate_handler otherEnd = nullptr; ///< the library's: it says what nobody caught
+
+/// Says the same where nobody could catch it: while the program's own constants are made, and in what libraries call noexcept
+/// (CLI11 when it looks for an option, nlohmann-json when it takes a document apart). A device's guardian gives zero force.
+[[noreturn]] void endWithoutCatch() noexcept
+{
+    try {
+        if (const auto error = std::current_exception()) std::rethrow_exception(error);
+    } catch (const std::bad_alloc&) {
+        leaveWithoutMemory();
+    } catch (...) { // a mistake of ours
+    }
+    otherEnd();
+    std::abort();
+}
+
+/// Before any other constant of the program is made.
+[[gnu::constructor(101)]] void beReadyToEnd() noexcept
+{
+    otherEnd = std::set_terminate(endWithoutCatch);
 }
 
 /// Takes the numbers of standard streams that the caller has closed: the first files that are opened would get them, and
@@ -247,7 +272,8 @@ int runProgram(int argumentCount, char** arguments)
     } catch (const std::bad_alloc&) {
         leaveWithoutMemory();
     } catch (const std::exception& error) {
-        if (isForWantOfThreads(error))
+        if (isFor(std::errc::not_enough_memory, error)) leaveWithoutMemory();
+        if (isFor(std::errc::resource_unavailable_try_again, error))
             return complain(
                 "the system starts no more threads for this user; end other programs, or raise the limit (ulimit -u)",
                 kBadInput);
@@ -257,10 +283,12 @@ int runProgram(int argumentCount, char** arguments)
 }
 
 int main(int argumentCount, char** arguments)
-{
+try {
     keepStandardStreams();
     keepFreedMemory();
     const int code = runProgram(argumentCount, arguments);
     if (palp::compute::driverLeftAtWork()) std::_Exit(code); // all output has been flushed
     return code;
+} catch (const std::bad_alloc&) { // while the command line was made
+    leaveWithoutMemory();
 }
