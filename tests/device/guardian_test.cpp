@@ -406,21 +406,21 @@ TEST_F(GuardianTest, AProgramWhoseSystemExecutesNothingOrGivesNoFileInMemoryIsTo
         int         error;
         const char* part;
     };
-    for (const auto& [call, error, part] :
+    for (const Case& one :
          {Case{SYS_execve, EACCES, "starting it: "}, Case{SYS_execve, ENOEXEC, "starting it: "},
           Case{SYS_memfd_create, EPERM, "a file in memory: "}, Case{SYS_ftruncate, EPERM, "its memory: "}}) {
         const auto act = [&] {
             int ends[2];
-            if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0 || !forbid(call, error)) return 3;
+            if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0 || !forbid(one.call, one.error)) return 3;
             try {
                 const Guardian guardian({.fd = ends[0]}, kFalconZero, "a Falcon");
             } catch (const Error& refused) {
                 const std::string said = refused.what();
-                return said.find(std::string(part) + std::strerror(error)) != std::string::npos ? 0 : 4;
+                return said.find(std::string(one.part) + std::strerror(one.error)) != std::string::npos ? 0 : 4;
             }
             return 5;
         };
-        EXPECT_EQ(inChild(act), 0) << part << std::strerror(error);
+        EXPECT_EQ(inChild(act), 0) << one.part << std::strerror(one.error);
     }
 }
 

@@ -6,6 +6,8 @@
 #include <iostream>
 #include <set>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/core/contract.h"
 #include "engine/core/counted.h"
 #include "engine/core/file.h"

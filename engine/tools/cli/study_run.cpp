@@ -31,7 +31,6 @@ using study::Task;
 using study::TaskKind;
 using study::Trial;
 using study::TrialRow;
-using Json = nlohmann::json;
 
 constexpr std::size_t kLongestLine = 1000; ///< [bytes] kept of an answer
 constexpr int         kMostStrange = 20;   ///< unknown answers in a row from input that is no terminal

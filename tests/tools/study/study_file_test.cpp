@@ -44,7 +44,7 @@ TEST(StudyFiles, AMistakeIsNamed)
     struct Case {
         const char *text, *word;
     };
-    for (const auto& [text, word] :
+    for (const Case& one :
          {Case{R"({"format": 2, "participant": "p", "plan": "{}", "clouds": []})", "\"format\""},
           Case{R"({"format": 1, "plan": "{}", "clouds": []})", "\"participant\""},
           Case{R"({"format": 1, "participant": "p", "plan": {}, "clouds": []})", "\"plan\""},
@@ -53,8 +53,8 @@ TEST(StudyFiles, AMistakeIsNamed)
           Case{R"({"format": 1, "participant": "p", "plan": "{}", "clouds": [], "felt_stiffness_N_per_m": {"a": "1"}})",
                "\"felt_stiffness_N_per_m\""},
           Case{"[]", "object"}, Case{"{", "line 1"}}) {
-        const std::string said = refusalOf([&] { static_cast<void>(parseStudyFile(text, "P/study.json")); });
-        EXPECT_TRUE(holds(said, {"P/study.json", word})) << said;
+        const std::string said = refusalOf([&] { static_cast<void>(parseStudyFile(one.text, "P/study.json")); });
+        EXPECT_TRUE(holds(said, {"P/study.json", one.word})) << said;
     }
 }
 
