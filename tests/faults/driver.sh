@@ -9,18 +9,14 @@
 set -u
 palpate=$1 layer=$2 failing_files=$3 sanitizers=${4:-} instants=${PALPATE_INSTANTS:-4}
 unset PALPATE_INSTANTS # it is no key of a scene
-work=$(mktemp -d)
+. "$(dirname "$0")/checks.sh"
 server=
 trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
-cd "$work" || exit 1
 seconds=1.5 # of a window; a sanitized one takes longer to draw its first panel
 twice='1 2'   # the first call of a kind and the next
 [ -z "$sanitizers" ] || seconds=4 twice=1
 # shellcheck disable=SC3045
 ulimit -c 0 2>/dev/null # what a driver ends need leave no core
-passed=0 failed=0
-pass() { passed=$((passed + 1)); }
-complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
 export VK_LAYER_PATH="$layer" VK_INSTANCE_LAYERS=VK_LAYER_PALPATE_failing FAILING_LAYER_COUNT="$work/count"
 
 arguments() { # of a command
@@ -34,26 +30,15 @@ arguments() { # of a command
 number() { sed -n "s/^ *\"$1\": \([-0-9.e+]*\),*\$/\1/p" "$2" | head -n 1; }
 isnear() { awk -v a="$1" -v b="$2" 'BEGIN { exit !(a != "" && b != "" && a - b <= 0.01 * b && b - a <= 0.01 * b) }'; }
 
-# forces_are_good TICKS: each of so many ticks, or of one and more where that is "some", is there; its force is finite and at
-# most the 6 N of a session, its time a millisecond after the last.
-forces_are_good() {
-    "$palpate" export recorded --csv recorded.csv >/dev/null 2>&1 || return 1
-    awk -F, -v all="$1" 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_x") x = n; next }
-        { for (n = x; n < x + 3; ++n) if ($n !~ /^[-+0-9.e]+$/ || $n > 6 || $n < -6) bad = 1
-          if ($1 - ticks * 1e-3 > 1e-6 || ticks * 1e-3 - $1 > 1e-6) bad = 1
-          ++ticks }
-        END { exit bad || !x || ticks < 1 || (all != "some" && ticks != all) }' recorded.csv
-}
-
 # judge COMMAND WHAT STATUS
 judge() {
     if [ "$3" -ge 124 ]; then complain "$2 ended by a signal or not at all, status $3: $(tail -n 3 err.txt)"; return; fi
     if [ "$3" -ne 0 ]; then
-        if ! grep -v '^palpate: warning' err.txt | grep -q '^palpate: .*[a-z]' || grep -q 'internal error' err.txt; then
+        if ! has_sentence; then
             complain "$2: exit $3 without a sentence: $(cat err.txt)"
         elif [ -s picture.png ]; then
             complain "$2: exit $3, and a picture"
-        elif [ -s recorded/ticks.npy ] && ! forces_are_good some; then
+        elif [ -s recorded/ticks.npy ] && ! forces_are_good recorded some; then
             complain "$2: exit $3, and a bad tick"
         else
             pass
@@ -62,7 +47,7 @@ judge() {
     fi
     case $1 in
     touch) isnear "$(number felt_stiffness out.txt)" "$felt" || { complain "$2: another answer: $(number felt_stiffness out.txt)"; return; } ;;
-    run) forces_are_good 400 || { complain "$2: a bad tick"; return; } ;;
+    run) forces_are_good recorded 400 || { complain "$2: a bad tick"; return; } ;;
     render) cmp -s picture.png good.png || { complain "$2: another picture"; return; } ;;
     esac
     pass
@@ -75,7 +60,7 @@ judge_crash() {
         complain "$2: exit $3, not 134: $(tail -n 3 err.txt)"
     elif [ -e picture.png ] && ! cmp -s picture.png good.png; then
         complain "$2: there is half a picture"
-    elif [ "$(wc -c 2>/dev/null <recorded/ticks.npy || echo 0)" -gt 2000 ] && ! forces_are_good some; then
+    elif [ "$(wc -c 2>/dev/null <recorded/ticks.npy || echo 0)" -gt 2000 ] && ! forces_are_good recorded some; then
         complain "$2: a bad tick"
     else
         pass
@@ -169,5 +154,4 @@ if [ -z "$sanitizers" ]; then # which want to be loaded first
     done
 fi
 
-echo "$passed checks passed, $failed failed"
-[ $failed -eq 0 ]
+conclude

@@ -9,12 +9,8 @@
 set -u
 palpate=$1 sanitizers=${2:-} hunt=$3 failing_files=$4 instants=${PALPATE_INSTANTS:-3}
 unset PALPATE_INSTANTS # it is no key of a scene
-work=$(mktemp -d)
+. "$(dirname "$0")/checks.sh"
 trap 'umount "$work/small" "$work/locked" 2>/dev/null; rm -rf "$work"' EXIT
-cd "$work" || exit 1
-passed=0 failed=0
-pass() { passed=$((passed + 1)); }
-complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
 sheet='sample:sheet --points 2000 --cells 16 --solver host'
 
 # shellcheck disable=SC2086
@@ -82,7 +78,7 @@ is_whole() {
 judge() {
     if [ "$4" -eq 127 ] && grep -q 'loading shared libraries' err.txt; then pass; return; fi # it did not start
     if [ "$4" -ge 126 ]; then complain "$1 ended by a signal, status $4: $(head -n 2 err.txt)"; return; fi
-    if [ "$4" -ne 0 ] && { grep -q 'internal error' err.txt || ! grep -q '^palpate: .*[a-z]' err.txt; }; then complain "$1: exit $4 without a sentence: $(cat err.txt)"; return; fi
+    if [ "$4" -ne 0 ] && ! has_sentence; then complain "$1: exit $4 without a sentence: $(cat err.txt)"; return; fi
     if find "$3" -name '*.part' | grep -q .; then complain "$1: a part of a file is left"; return; fi
     if [ "$4" -ne 0 ] && [ -f "$3/$2" ] && [ "$(cat "$3/$2")" != 'what was there before' ]; then complain "$1: exit $4, and the older file is lost"; return; fi
     if [ "$4" -eq 0 ] && [ ! -e "$3/$2" ] && ! grep -q 'would be used by' out.txt; then # the numbers of a Falcon are said all the same
@@ -205,5 +201,4 @@ rm -rf closed
 "$palpate" export closed --csv closed.csv >out.txt 2>err.txt && [ "$(wc -l <closed.csv)" -eq 301 ] &&
     pass || complain "run into a closed pipe: the recording is not whole: $(cat err.txt)"
 
-echo "$passed checks passed, $failed failed"
-[ $failed -eq 0 ]
+conclude

@@ -3,12 +3,7 @@
 # PALPATE_INSTANTS says how often (3); 500 take an hour.
 set -u
 palpate=$1 instants=${PALPATE_INSTANTS:-3}
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-passed=0 failed=0
-pass() { passed=$((passed + 1)); }
-complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
+. "$(dirname "$0")/checks.sh"
 wait_at_random() { # NUMBER MOST: up to MOST seconds, the same for the same number
     sleep "$(awk -v n="$1" -v most="$2" 'BEGIN { srand(n + 1); rand(); printf "%.3f", rand() * most }')"
 }
@@ -81,5 +76,4 @@ if "$palpate" study plan.json --participant P01 --out study --clock virtual <key
 
 [ $hit -gt 0 ] && pass || complain "no study was killed before it ended by itself"
 
-echo "$passed checks passed, $failed failed"
-[ $failed -eq 0 ]
+conclude

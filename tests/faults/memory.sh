@@ -7,12 +7,7 @@
 set -u
 palpate=$1 failing=$2 instants=${PALPATE_INSTANTS:-12}
 unset PALPATE_INSTANTS # it is no key of a scene
-work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
-cd "$work" || exit 1
-passed=0 failed=0
-pass() { passed=$((passed + 1)); }
-complain() { failed=$((failed + 1)); echo "FAILED: $*"; }
+. "$(dirname "$0")/checks.sh"
 sheet='sample:sheet --points 2000 --cells 16 --solver host'
 commands() {
     cat <<LIST
@@ -25,13 +20,10 @@ LIST
 
 judge() { # NAME STATUS
     if [ "$2" -gt 2 ]; then complain "$1: ended by a signal, status $2: $(tail -n 2 err.txt)"; return; fi
-    if [ "$2" -ne 0 ] && { grep -q 'internal error' err.txt || ! grep -q '^palpate: .*[a-z]' err.txt; }; then complain "$1: exit $2 without a sentence: $(cat err.txt)"; return; fi
+    if [ "$2" -ne 0 ] && ! has_sentence; then complain "$1: exit $2 without a sentence: $(cat err.txt)"; return; fi
     if find . -name '*.part' | grep -q .; then complain "$1: a part of a file is left"; return; fi
     if [ "$(wc -c 2>/dev/null <recorded/ticks.npy || echo 0)" -gt 2000 ]; then
-        "$palpate" export recorded --csv ticks.csv >/dev/null 2>&1 || { complain "$1: the recording cannot be read"; return; }
-        awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "force_x") x = n; next }
-            { for (n = x; n < x + 3; ++n) if ($n !~ /^[-+0-9.e]+$/ || $n > 6 || $n < -6) bad = 1 }
-            END { exit bad || !x }' ticks.csv || { complain "$1: a bad force"; return; }
+        forces_are_good recorded some || { complain "$1: the recording, or a force in it, is bad"; return; }
     fi
     pass
 }
@@ -53,6 +45,5 @@ commands | {
             n=$((n + 1))
         done
     done
-    echo "$passed checks passed, $failed failed"
-    [ $failed -eq 0 ]
+    conclude
 }
