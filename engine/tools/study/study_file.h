@@ -21,6 +21,8 @@ struct StudyFile {
     /// [N/m] felt at the place of each condition's scene, as a device renders it; empty: nothing can be felt there
     std::map<std::string, std::optional<double>> feltStiffness{};
     std::string                                  version{}; ///< of the program that wrote it
+
+    bool operator==(const StudyFile&) const = default;
 };
 
 /// Reads such a file's text, of format 1.

@@ -20,14 +20,7 @@ TEST(StudyFiles, WhatIsWrittenIsRead)
                             .version       = "0.2.0 abc"};
     const StudyFile read = parseStudyFile(studyJson(written), "study.json");
 
-    EXPECT_EQ(read.participant, written.participant);
-    EXPECT_EQ(read.title, written.title);
-    EXPECT_EQ(read.plan, written.plan);
-    EXPECT_EQ(read.clouds, written.clouds);
-    EXPECT_EQ(read.hand, written.hand);
-    EXPECT_EQ(read.clock, written.clock);
-    EXPECT_EQ(read.feltStiffness, written.feltStiffness);
-    EXPECT_EQ(read.version, written.version);
+    EXPECT_TRUE(read == written) << studyJson(read);
 }
 
 TEST(StudyFiles, OlderOnesNameNeitherHandNorClock)
