@@ -1,5 +1,6 @@
 # What the scripts of this folder share; each reads it first, with $palpate set. It goes to a new folder, $work, that is removed
 # in the end, counts checks, and judges what a program leaves there in err.txt and in recordings.
+palpate=$(realpath "$palpate") || exit 1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1

@@ -7,7 +7,7 @@
 # the host took over; of a session every tick, with a force that is finite and at most the limit.
 # PALPATE_INSTANTS says how many calls of each command fail in each way (4); 0 means every call, which takes an hour.
 set -u
-palpate=$1 layer=$2 failing_files=$3 sanitizers=${4:-} instants=${PALPATE_INSTANTS:-4}
+palpate=$1 layer=$(realpath "$2") failing_files=$(realpath "$3") sanitizers=${4:-} instants=${PALPATE_INSTANTS:-4}
 unset PALPATE_INSTANTS # it is no key of a scene
 . "$(dirname "$0")/checks.sh"
 server=

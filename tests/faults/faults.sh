@@ -7,7 +7,7 @@
 # Expected each time: exit 0 with everything there, or exit 2 with a sentence; an older file as it was; no part of a file. Sanitizers need
 # handles of their own, so that part is omitted with them.
 set -u
-palpate=$1 sanitizers=${2:-} hunt=$3 failing_files=$4 instants=${PALPATE_INSTANTS:-3}
+palpate=$1 sanitizers=${2:-} hunt=$(realpath "$3") failing_files=$(realpath "$4") instants=${PALPATE_INSTANTS:-3}
 unset PALPATE_INSTANTS # it is no key of a scene
 . "$(dirname "$0")/checks.sh"
 trap 'umount "$work/small" "$work/locked" 2>/dev/null; rm -rf "$work"' EXIT

@@ -3,7 +3,8 @@
 # and the ports that a session opens, which are none unless they are asked for. Arguments: the program, the library of
 # jumping_clock.cpp, and the build's sanitizers, which bring clocks and threads of their own: those parts are omitted then.
 set -u
-palpate=$1 jump=$2 sanitizers=${3:-}
+palpate=$1 jump=$(realpath "$2") sanitizers=${3:-}
+root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/checks.sh"
 chmod 777 "$work"
 cp "$jump" "$work/jumping_clock.so" # LD_PRELOAD parts its paths at spaces
@@ -103,12 +104,13 @@ ports() {
         done
     done
 }
-opens() { # NAME EXPECTED ARGUMENTS...: what a session of three seconds listens at
+seconds=3
+opens() { # NAME EXPECTED ARGUMENTS...: what a session of so many seconds listens at
     name=$1 expected=$2
     shift 2
     rm -rf recorded
     # shellcheck disable=SC2086
-    "$palpate" run $sheet --seconds 3 --record recorded "$@" >out.txt 2>err.txt </dev/null &
+    "$palpate" run $sheet --seconds $seconds --record recorded "$@" >out.txt 2>err.txt </dev/null &
     process=$!
     n=0
     until [ -s recorded/ticks.npy ] || [ $n -gt 200 ]; do n=$((n + 1)); sleep 0.1; done
@@ -119,5 +121,12 @@ opens() { # NAME EXPECTED ARGUMENTS...: what a session of three seconds listens 
 opens 'a session' ''
 opens 'a session with an emulated device' '' --hand falcon-emulator
 opens 'a session that is told of markers' 'udp 0100007F:5EED' --markers udp:24301
+if command -v python3 >/dev/null; then # a device that is a script, which presses after three seconds
+    python3 "$root/samples/bridge_peer.py" 47322 20 >peer.txt & # longer than a busy machine takes to start
+    peer=$! seconds=5
+    opens 'a session whose device comes by UDP' 'udp 0100007F:B8DA' --hand bridge:udp:47322
+    wait $peer
+    grep -q 'rendered at most [0-9.]*[1-9]' peer.txt && pass || complain "the device that is a script felt nothing: $(cat peer.txt)"
+fi
 
 conclude

@@ -5,7 +5,7 @@
 # Expected each time: the program's own exit, with a sentence if it is not 0, and no signal; of a session all that was recorded
 # until then.
 set -u
-palpate=$1 failing=$2 instants=${PALPATE_INSTANTS:-12}
+palpate=$1 failing=$(realpath "$2") instants=${PALPATE_INSTANTS:-12}
 unset PALPATE_INSTANTS # it is no key of a scene
 . "$(dirname "$0")/checks.sh"
 sheet='sample:sheet --points 2000 --cells 16 --solver host'
