@@ -75,7 +75,8 @@ TEST_P(RoundSamples, PointsAreUniformPerArea)
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RoundSamples, testing::Values("ellipsoid", "ear-lobe"));
+INSTANTIATE_TEST_SUITE_P(All, RoundSamples, testing::Values("ellipsoid", "ear-lobe"),
+                         [](const auto& tested) { return std::string(tested.param) == "ellipsoid" ? "ellipsoid" : "lobe"; });
 
 TEST(Samples, TheSheetsOfTheLobeMeetAtTheRim)
 {

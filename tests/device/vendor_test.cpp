@@ -107,8 +107,8 @@ protected:
     const GovernedForce push = governed({1, -0.5, 0.25});
 };
 
-INSTANTIATE_TEST_SUITE_P(Of, MakersLibraries, ::testing::ValuesIn(kMakers),
-                         [](const auto& which) { return which.param.name; });
+const auto named = [](const auto& which) { return which.param.name; };
+INSTANTIATE_TEST_SUITE_P(Of, MakersLibraries, ::testing::ValuesIn(kMakers), named);
 
 TEST_P(MakersLibraries, TheForceThatArrivesIsTheGovernorsInTheirFrame)
 {
@@ -268,7 +268,7 @@ TEST_P(MakersLibraries, ClosingTwiceClosesOnce)
 // --- one maker's own
 
 class ForceDimension : public MakersLibraries {};
-INSTANTIATE_TEST_SUITE_P(Library, ForceDimension, ::testing::Values(kMakers[0]));
+INSTANTIATE_TEST_SUITE_P(Library, ForceDimension, ::testing::Values(kMakers[0]), named);
 
 TEST_P(ForceDimension, TheSameSampleAgainIsNoNewOne)
 {
@@ -410,7 +410,7 @@ protected:
         return false;
     }
 };
-INSTANTIATE_TEST_SUITE_P(Library, OpenHaptics, ::testing::Values(kMakers[1]));
+INSTANTIATE_TEST_SUITE_P(Library, OpenHaptics, ::testing::Values(kMakers[1]), named);
 
 TEST_P(OpenHaptics, ErrorsOfAForceAreSaidAndTheForceComesBack)
 {

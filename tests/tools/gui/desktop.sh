@@ -1,6 +1,7 @@
 #!/bin/sh
 # The real window on a display without a screen, with keys and a pointer that xdotool moves, all under Vulkan's
-# validation layer with synchronization checks: any message fails. Arguments: palpate, a folder that may be emptied, and
+# validation layer with synchronization checks: any message fails. Where Vulkan computes the plates too, these are under it as
+# well, a second time with shaders that check each access. Arguments: palpate, a folder that may be emptied, and
 # palp_desktop_client, which closes the window as a window manager does and lets files fall on it as a file manager does.
 set -u
 palpate=$1 work=$2 client=$3
@@ -29,6 +30,7 @@ trap finish EXIT
 
 long=120 # [s] for what takes a second: an instrumented program beside others has needed more than 20
 failed=0 solver=host # a patch takes lavapipe as long as some pictures
+validate=--validate  # the pictures' device
 fail() { echo "FAILED: $*"; failed=1; }
 # waits until something holds: description, seconds, command
 until_() {
@@ -55,7 +57,8 @@ ended() {
 # starts it with these arguments more, and waits for the window
 start() {
     : >err
-    "$palpate" view "$@" --size 640x480 --validate --json --solver "$solver" >out 2>>err &
+    # shellcheck disable=SC2086  # a word or none
+    "$palpate" view "$@" --size 640x480 $validate --json --solver "$solver" >out 2>>err &
     program=$!
     until_ 'a window' $long shows || exit 1
     window=$(xdotool search --onlyvisible --name Palpate | head -1)
@@ -166,22 +169,37 @@ xdotool key --window "$window" F5 sleep 0.3
 kill -TERM "$program"
 ended 'being told to end'
 
-# Plates and pictures on one Vulkan driver, with a hand that feels them.
-solver=lavapipe
-start sample:skin --points 1500 --cells 24
-sleep 2
-number=$((number + 1))
-xdotool windowfocus --sync "$window" key --window "$window" F5
-until_ 'a recording of plates by Vulkan' $long test -s session-000$number/ticks.npy
-xdotool mousemove --window "$window" 420 260 keydown space sleep 4 mousemove --window "$window" 430 260 sleep 2 keyup space sleep 0.5
-xdotool key --window "$window" F5 sleep 0.5
-"$client" "$window" close || fail 'the window of plates by Vulkan cannot be asked to close'
-ended 'closing the window of plates by Vulkan'
-solver=host
-[ -s err ] && { fail 'plates by Vulkan were complained of:'; cat err; }
-"$palpate" export session-000$number --csv vulkan.csv >/dev/null || fail 'the recording of plates by Vulkan cannot be read'
-awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "compliance") column = n } NR > 1 && column && $column > 0 { felt = 1 } END { exit !felt }' vulkan.csv ||
-    { fail 'no plate by Vulkan was felt'; head -2 vulkan.csv; }
+# Plates and pictures on one Vulkan driver, with a hand that feels them. The environment brings the layer, to both.
+layer() { # its checks, comma-separated; what it says stands in layer.txt
+    rm -f layer.txt
+    printf 'khronos_validation.%s\n' 'debug_action = VK_DBG_LAYER_ACTION_LOG_MSG' "log_filename = $work/layer.txt" \
+        'report_flags = error,warn,perf' "enables = $1" >layer_settings.txt
+    VK_LAYER_SETTINGS_PATH=$work/layer_settings.txt VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation
+    export VK_LAYER_SETTINGS_PATH VK_INSTANCE_LAYERS
+}
+enable=VK_VALIDATION_FEATURE_ENABLE
+layer ${enable}_BEST_PRACTICES_EXT # which dislikes small buffers: so its words arrive, those about plates too
+"$palpate" touch sample:sheet --points 1500 --cells 16 --solver lavapipe >/dev/null || fail 'no touch under the validation layer'
+grep -q 'BestPractices-vkAllocateMemory' layer.txt || fail 'the validation layer does not see the plates'
+validate= solver=lavapipe
+for checks in ${enable}_SYNCHRONIZATION_VALIDATION_EXT ${enable}_GPU_ASSISTED_EXT,${enable}_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT; do
+    layer $checks
+    start sample:skin --points 1500 --cells 24
+    sleep 2
+    number=$((number + 1))
+    xdotool windowfocus --sync "$window" key --window "$window" F5
+    until_ 'a recording of plates by Vulkan' $long test -s session-000$number/ticks.npy
+    xdotool mousemove --window "$window" 420 260 keydown space sleep 4 mousemove --window "$window" 430 260 sleep 2 keyup space sleep 0.5
+    xdotool key --window "$window" F5 sleep 0.5
+    "$client" "$window" close || fail 'the window of plates by Vulkan cannot be asked to close'
+    ended 'closing the window of plates by Vulkan'
+    [ -s err ] && { fail 'plates by Vulkan were complained of:'; cat err; }
+    { [ -e layer.txt ] && [ ! -s layer.txt ]; } || { fail "the validation layer, $checks:"; head -c 4000 layer.txt; }
+    "$palpate" export session-000$number --csv vulkan.csv >/dev/null || fail 'the recording of plates by Vulkan cannot be read'
+    awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "compliance") column = n } NR > 1 && column && $column > 0 { felt = 1 } END { exit !felt }' vulkan.csv ||
+        { fail "no plate by Vulkan was felt, $checks"; head -2 vulkan.csv; }
+done
+unset VK_LAYER_SETTINGS_PATH VK_INSTANCE_LAYERS
 
 # Without a display there is a sentence, and another way.
 env -u DISPLAY -u WAYLAND_DISPLAY "$palpate" view sample:skin >out 2>err
