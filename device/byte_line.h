@@ -16,6 +16,12 @@ public:
     using std::runtime_error::runtime_error;
 };
 
+/// The line is there, and its guardian process is not: no force goes out any more, but zero does.
+class GuardianEnded : public LineEnded {
+public:
+    using LineEnded::LineEnded;
+};
+
 /// A line of bytes to a program or a device: a socket, or an emulator in this process.
 /// \thread one at a time
 class ByteLine {
@@ -42,7 +48,7 @@ public:
     virtual void guard(const ZeroRule& /*rule*/) {}
 
     /// Writes a packet that may push, by way of the guardian if there is one.
-    /// \throws LineEnded; also when the guardian has ended
+    /// \throws LineEnded; GuardianEnded once, after which packets of zero pass
     virtual void writeForce(std::span<const std::uint8_t> packet) { write(packet); }
 
     /// Returns whether, since the last call, the guardian took the force because nothing was written for 25 ms.

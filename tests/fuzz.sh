@@ -58,6 +58,7 @@ cmake -S tests/fuzz/instrumented -B "$build" -DCMAKE_CXX_COMPILER="$clang" >"$bu
 echo "building the harnesses with $clang"
 cmake --build "$build" --parallel 2 >"$build/build.log" 2>&1 || { cat "$build/build.log"; exit 2; }
 sh tests/fuzz/make_seeds.sh "$build/seeds"
+sh tests/fuzz/written_seeds.sh "$build/../bin/palpate" "$build/seeds"
 
 count=0
 for format in $formats; do count=$((count + 1)); done
@@ -68,9 +69,9 @@ for format in $formats; do
     mkdir -p "$build/corpus/$format" "tests/fuzz/found/$format"
     dictionary=
     if [ -f "tests/fuzz/$format.dict" ]; then dictionary="-dict=tests/fuzz/$format.dict"; fi
-    # A file of 4 KiB cannot ask for 64 MiB unless its header is believed.
+    # A file of 8 KiB cannot ask for 64 MiB unless its header is believed. A session's description has 7.
     # shellcheck disable=SC2086
-    if "$build/bin/fuzz_$format" -max_total_time="$seconds" -max_len=4096 -timeout=10 -rss_limit_mb=1024 \
+    if "$build/bin/fuzz_$format" -max_total_time="$seconds" -max_len=8192 -timeout=10 -rss_limit_mb=1024 \
         -malloc_limit_mb=64 -print_final_stats=1 -artifact_prefix="$build/$format-" $dictionary "$build/corpus/$format" \
         "$build/seeds/$format" "tests/fuzz/found/$format" >"$build/$format.log" 2>&1; then
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$format.log")

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Checks that every relative link and picture of the pages points at an existing file, and every #part at a heading.
+# Checks that every relative link and picture of the pages points at an existing file, every #part at a heading, and that the
+# tests exist that the pages name as `Suite.Case`, with * for any letters.
 # Arguments: the checkout; pages, or none for all that git or a reader would show.
 set -u
 cd "$1" || exit 1
@@ -32,7 +33,7 @@ for page in "$@"; do [ -f "$page" ] || { echo "$page is not there"; exit 1; }; d
 links "$@" >"$work"
 [ -s "$work" ] || { echo 'no link was found'; exit 1; }
 
-bad=0
+links=$(wc -l <"$work") bad=0
 while IFS='	' read -r page target; do
     case $target in
     http://* | https://* | mailto:*) continue ;; # no test needs the network
@@ -45,5 +46,13 @@ while IFS='	' read -r page target; do
     esac
 done <"$work"
 
-[ $bad -eq 0 ] && echo "$(wc -l <"$work") links point at existing files and headings"
+grep -rhoE '^TEST(_F|_P)?\([A-Za-z0-9]+, [A-Za-z0-9]+\)' tests --include='*.cpp' | sed 's/^[A-Z_]*(\(.*\), \(.*\))$/\1.\2/' >"$work"
+for page in "$@"; do
+    for test in $(tr -c 'A-Za-z0-9.`*' '\n' <"$page" | sed -n 's/^`\([A-Z][A-Za-z0-9]*\.[A-Z*][A-Za-z0-9*]*\)`.*/\1/p' | sort -u); do
+        pattern=$(echo "$test" | sed 's/\./\\./; s/\*/[A-Za-z0-9]*/g')
+        grep -qxE "$pattern" "$work" || { echo "$page names the test $test, which does not exist"; bad=1; }
+    done
+done
+
+[ $bad -eq 0 ] && echo "$links links point at existing files and headings"
 exit $bad

@@ -1,6 +1,5 @@
 #!/bin/sh
-# Checks that engine/method.md lists every \differs note of the code, and nothing else, and that the tests that it names
-# exist. Argument: the checkout.
+# Checks that engine/method.md lists every \differs note of the code, and nothing else. Argument: the checkout.
 #
 # A note belongs to the declaration that follows its comment. A row of the page is [`NAME`](FILE): NAME must stand in the
 # first line of that declaration.
@@ -53,9 +52,4 @@ END {
     exit bad
 }' "$work/rows" "$work/notes" || exit 1
 
-bad=0
-for test in $(tr -c 'A-Za-z0-9.`' '\n' <"$page" | sed -n 's/^`\([A-Z][A-Za-z0-9]*\.[A-Z][A-Za-z0-9]*\)`.*/\1/p' | sort -u); do
-    grep -rqE "^TEST(_F|_P)?\(${test%.*}, ${test#*.}\)" tests --include='*.cpp' || { echo "$page names the test $test, which does not exist"; bad=1; }
-done
-[ $bad -eq 0 ] && echo "$(wc -l <"$work/notes") notes, each listed in $page"
-exit $bad
+echo "$(wc -l <"$work/notes") notes, each listed in $page"

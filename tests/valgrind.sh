@@ -12,4 +12,5 @@ trap 'rm -rf "$seeds"' EXIT
 trap 'exit 130' INT
 trap 'exit 143' TERM
 sh tests/fuzz/make_seeds.sh "$seeds"
+sh tests/fuzz/written_seeds.sh "$build/bin/palpate" "$seeds"
 valgrind --quiet --error-exitcode=1 --exit-on-first-error=yes --num-callers=30 "$replay" --few "$seeds" tests/fuzz/found

@@ -80,7 +80,7 @@ public:
     {
         // Told once; the zeros that end a session still pass.
         if (guardian_ && !guardian_->isWatching() && !std::exchange(unguarded_, true))
-            throw LineEnded(name_ + ": its guardian process has ended");
+            throw GuardianEnded(name_ + ": its guardian process has ended");
         write(guardian_ ? guardian_->pass(packet) : packet);
         if (guardian_) guardian_->passed();
     }

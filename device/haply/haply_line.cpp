@@ -290,21 +290,28 @@ HaplyDescription HaplyLine::greet(HaplyDescription device)
 void HaplyLine::close() noexcept
 {
     if (client_) {
-        try {
-            if (pushes_) client_->sendForce(haplyCommand(id_, dialect_, glm::dvec3(0)));
-            if (!id_.empty()) client_->sendForce(haplyCommand(id_, dialect_, {}));
-        } catch (const std::exception&) { // silence is zero for the service
-        }
+        letGo();
         client_->sayGoodbye();
     }
     client_.reset();
     events_.reset();
 }
 
+void HaplyLine::letGo() noexcept
+{
+    try {
+        if (pushes_) client_->sendForce(haplyCommand(id_, dialect_, glm::dvec3(0)));
+        pushes_ = false;
+        if (!id_.empty()) client_->sendForce(haplyCommand(id_, dialect_, {}));
+    } catch (const std::exception&) { // the line takes nothing any more: silence is zero for the service
+    }
+}
+
 void HaplyLine::lose(LineSample& sample, DeviceFault fault, const char* words) noexcept
 {
     sample.fault = fault;
     sample.words = words;
+    if (client_) letGo();
     client_.reset();
     events_.reset();
 }
@@ -323,6 +330,8 @@ void HaplyLine::exchange(const LineOrder& order, LineSample& sample) noexcept
         const bool mustLetGo = pushes_ && !order.enable;
         if (!inFlight_ || mustLetGo || clock_ - asked_ > kGiveUp) say(order, clock_);
         static_cast<void>(hear(settings_.answerWait, sample));
+    } catch (const GuardianEnded&) {
+        return lose(sample, DeviceFault::linkLost, "the guardian process has ended, without which no force goes out");
     } catch (const LineEnded&) {
         return lose(sample, DeviceFault::linkLost,
                     "the Inverse Service ended the connection; is haply-inverse-service still running?");

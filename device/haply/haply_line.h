@@ -104,6 +104,7 @@ private:
     void                           stop(double until, const char* words) noexcept;
     [[nodiscard]] const char*      whyStopped() const noexcept;
     void                           say(const LineOrder& order, double now);
+    void                           letGo() noexcept; ///< asks for no force any more
     void                           lose(LineSample& sample, DeviceFault fault, const char* words) noexcept;
 
     HaplyOpener                      open_;

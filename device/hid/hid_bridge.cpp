@@ -235,10 +235,11 @@ void HidBridgeDevice::run(const std::stop_token& stop) noexcept
     sayZero();
 }
 
+/// Says that there is no force, also where the device is taken as gone: perhaps only its guardian is.
 void HidBridgeDevice::sayZero() noexcept
 {
     try {
-        for (int n = 0; n < kZeros && !seen_.lost; ++n) send({});
+        for (int n = 0; n < kZeros; ++n) send({});
     } catch (const HidLost&) {
         seen_.lost = true; // its own watchdog then stops it
     }

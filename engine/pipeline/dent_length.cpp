@@ -302,6 +302,20 @@ std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSett
     return asked.lengths;
 }
 
+BeyondShell beyondShell(const SoftObject& object, const PatchSettings& settings, double window)
+{
+    double      all = 0;
+    BeyondShell beyond;
+    for (const Bend& bend : bendsOf(object, settings)) {
+        const double curvature = std::abs(bend.most);
+        all += bend.area;
+        if (curvature * window > 8 * kMostSag) beyond.deep += bend.area; // as a parabola sags
+        if (curvature * object.material().thickness > kMostThick) beyond.thick += bend.area;
+    }
+    if (!(all > 0)) return {};
+    return {beyond.deep / all, beyond.thick / all};
+}
+
 double dentWindow(const SoftObject& object, const PatchSettings& settings)
 {
     return chosen(object, settings).width;

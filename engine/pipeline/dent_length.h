@@ -17,6 +17,9 @@ inline constexpr double kFewestCells = 1.25;
 /// Sag of a surface over the width of its patch window up to which the theory of shallow shells holds [1].
 inline constexpr double kMostSag = 0.25;
 
+/// Thickness over the smaller radius of curvature up to which a sheet counts as thin [1].
+inline constexpr double kMostThick = 0.1;
+
 /// The lesser principal curvature over the larger up to which a surface counts as curved one way: dents then reach far [1].
 inline constexpr double kOneWay = 0.02;
 
@@ -67,6 +70,17 @@ struct DentLengths {
 /// \thread pure
 /// \source the shallow shell's l of Reissner 1946, with a foundation added to the membrane's
 [[nodiscard]] std::optional<DentLengths> dentLengths(const SoftObject& object, const PatchSettings& settings);
+
+/// Shares of a shell's surface about which a touch leaves its theory, and warns [1].
+struct BeyondShell {
+    double deep  = 0; ///< the patch window sags by more than kMostSag
+    double thick = 0; ///< the sheet is thicker than kMostThick of its smaller radius of curvature
+};
+
+/// Finds those, with the curvature at places spread evenly over the object.
+/// \param window  width of the patch window [m]
+/// \note as dentLengths()
+[[nodiscard]] BeyondShell beyondShell(const SoftObject& object, const PatchSettings& settings, double window);
 
 /// Returns how wide the patch window of WindowOf::dent is [m]: as nearly all places of the object ask for where dents end by
 /// themselves, but no wider than the object fills in its middle and its cells carry the fingertip, and at least four radii of

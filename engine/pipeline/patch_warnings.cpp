@@ -138,12 +138,12 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
 /// Says where a sheet is not thin, as all of these theories take it to be.
 void addThick(std::vector<std::string>& result, const Patch& patch)
 {
-    constexpr double kOfRadius = 0.1, kOfWindow = 0.25; // thickness over radius, and over what bends [1]
+    constexpr double kOfWindow = 0.25; // thickness over what bends [1]
     const double     h = patch.thickness, bent = bentSize(patch), curved = h * std::abs(patch.principal.first);
     if (h > kOfWindow * bent)
         result.push_back("the sheet is " + formatQuantity(h, "m") + " thick and only " + formatQuantity(bent, "m") +
                          " of it bends: that is no thin sheet, and its answer is no more than a guess");
-    else if (curved > kOfRadius)
+    else if (curved > kMostThick)
         result.push_back("the sheet is " + withOneDecimal(100 * curved) +
                          " % as thick as its radius of curvature is long, expected at most 10: the theory is that of "
                          "thin shells");

@@ -12,13 +12,16 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <map>
 #include <mutex>
 #include <string_view>
+#include <tuple>
 
+#include <unistd.h>
 #include <vulkan/vk_layer.h>
 #include <vulkan/vulkan.h>
 
@@ -149,7 +152,7 @@ VkResult failureOf(Call call)
     }
     if (isLost && saysLost(call)) return VK_ERROR_DEVICE_LOST;
     if (!hangs) return VK_SUCCESS;
-    if (call == Call::vkWaitForFences || call == Call::vkAcquireNextImageKHR) return VK_TIMEOUT; // no test has patience
+    if (call == Call::vkWaitForFences || call == Call::vkAcquireNextImageKHR) return VK_TIMEOUT; // see outwait()
     return call == Call::vkGetFenceStatus ? VK_NOT_READY : VK_SUCCESS;
 }
 
@@ -165,6 +168,18 @@ void finishAll(const void* object)
     static_cast<void>(reinterpret_cast<PFN_vkDeviceWaitIdle>(idle)(of.handle));
 }
 
+/// What is never finished is waited for as long as the caller would: for ever, or not at all, because no test has patience.
+void outwait(std::uint64_t nanoseconds)
+{
+    while (nanoseconds == UINT64_MAX) ::pause();
+}
+template <Call call, class... Rest>
+void outwait(Rest... rest)
+{
+    if constexpr (call == Call::vkWaitForFences) outwait(std::get<3>(std::tuple(rest...)));
+    if constexpr (call == Call::vkAcquireNextImageKHR) outwait(std::get<1>(std::tuple(rest...)));
+}
+
 template <Call call, class Function>
 struct Hooked;
 template <Call call, class Object, class... Rest>
@@ -174,6 +189,7 @@ struct Hooked<call, VkResult(VKAPI_PTR*)(Object, Rest...)> {
         const bool wasLost = isLost;
         if (const VkResult failure = failureOf(call); failure != VK_SUCCESS) {
             if (isLost && !wasLost) finishAll(object); // nothing works on after a loss
+            if (failure == VK_TIMEOUT) outwait<call>(rest...);
             return failure;
         }
         if (hangs && (call == Call::vkQueueSubmit || call == Call::vkQueuePresentKHR || isWait(call)))

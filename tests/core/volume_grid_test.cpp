@@ -4,12 +4,14 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <glm/geometric.hpp>
 
@@ -316,6 +318,55 @@ TEST(VolumeGrid, AHeaderThatPromisesTooMuchTakesNoMemory)
     EXPECT_TRUE(holds(refusal(plain({1}, {most, most, most})), {"byte 40: the header promises 35181150961663 values"}));
 }
 
+/// Bytes that note how much memory the process has when they end.
+class Ending : public std::stringbuf {
+public:
+    explicit Ending(const std::string& bytes) : std::stringbuf(bytes) {}
+
+    static std::size_t resident() // [bytes]
+    {
+        std::size_t all = 0, pages = 0;
+        std::ifstream("/proc/self/statm") >> all >> pages;
+        return pages * std::size_t(::sysconf(_SC_PAGESIZE));
+    }
+    std::size_t atEnd = 0; // [bytes]
+
+protected:
+    int_type underflow() override
+    {
+        const int_type next = std::stringbuf::underflow();
+        if (next == traits_type::eof()) atEnd = resident();
+        return next;
+    }
+};
+
+// A packed file of 130 kB may promise half a gigabyte: it takes memory as its values come.
+TEST(VolumeGrid, ValuesThatArePromisedTakeNoMemoryBeforeTheyCome)
+{
+    const std::string bytes =
+        changed(changed(plain({1, 2, 3, 4}, {512, 512, 512}), 70, std::int16_t(2)), 72, std::int16_t(8));
+    Ending            data(bytes);
+    std::istream      in(&data);
+    const std::size_t before = Ending::resident();
+
+    const std::string said =
+        refusalOf([&] { static_cast<void>(parseVolume(in, 1U << 30, "test", VolumeFormat::nifti, {})); });
+
+    EXPECT_TRUE(holds(said, {"ends within its values"}));
+    EXPECT_LT(data.atEnd, before + (std::size_t(128) << 20))
+        << "512 MiB were promised; a sanitizer keeps an eighth of that";
+}
+
+TEST(VolumeGrid, MoreThanHalfAGigabyteIsRefused)
+{
+    const std::string bytes =
+        changed(changed(plain({1, 2, 3, 4}, {1024, 1024, 1024}), 70, std::int16_t(2)), 72, std::int16_t(8));
+    std::istringstream in(bytes);
+    EXPECT_TRUE(holds(
+        refusalOf([&] { static_cast<void>(parseVolume(in, std::uint64_t(1) << 31, "test", VolumeFormat::nifti, {})); }),
+        {"1024 x 1024 x 1024", "take every second one"}));
+}
+
 // Any byte may be wrong: either it is read or refused in a sentence.
 TEST(VolumeGrid, NoByteOfAHeaderMakesAnythingButAnError)
 {
@@ -442,6 +493,9 @@ TEST(GridLaw, AFileOfASceneLiesInTheScenesFolder)
     for (const char* other :
          {"constant:value=1", "", "grid", "grid:", R"({"law": "grid)", R"({"law": "grid", "file": 3})"})
         EXPECT_EQ(lawWithFileIn(other, "/a"), other);
+    const std::string deep(200'000, '['), shut(200'000, ']'); // the library prints by recursion
+    const std::string law = R"({"law": "grid", "file": "e.nii", "origin": )" + deep + shut + "}";
+    EXPECT_EQ(lawWithFileIn(law, "/a"), law) << "whoever reads it refuses it";
 }
 
 } // namespace

@@ -25,6 +25,7 @@
 #include "device/hid/bridge_stream.h"
 #include "engine/core/contract.h"
 #include "tests/device/governed.h"
+#include "tests/device/guardian_of.h"
 
 namespace palp {
 namespace {
@@ -121,7 +122,7 @@ public:
                           patience = command.watchdog;
                           force    = command.enable ? command.force.x : 0;
                       }
-                  if (seconds() - heard > patience) force = 0;
+                  if (!isStubborn && seconds() - heard > patience) force = 0;
                   if (!isSilent) send(write, encode(answerOf(++sequence)));
                   std::this_thread::sleep_for(std::chrono::milliseconds(1));
               }
@@ -133,6 +134,7 @@ public:
 
     std::atomic<double>  force{0}; ///< [N] x
     std::atomic<bool>    isSilent{false};
+    std::atomic<bool>    isStubborn{false}; ///< it has no watchdog, so that only a report ends its force
     std::atomic<Trouble> trouble{Trouble::none};
 
 private:
@@ -248,23 +250,44 @@ std::uint16_t freePort()
     return ntohs(probe.address.sin_port);
 }
 
+/// A device by UDP.
+struct UdpFirmware {
+    std::uint16_t                 port = freePort();
+    Socket                        peer{};
+    Firmware                      firmware{[this](std::span<const std::uint8_t> bytes) {
+                          peer.address.sin_port = htons(port);
+                          static_cast<void>(!sendto(peer.fd, bytes.data(), bytes.size(), 0,
+                                                                         reinterpret_cast<const sockaddr*>(&peer.address),
+                                                                         sizeof peer.address));
+                      },
+                      [this](std::span<std::uint8_t> bytes) {
+                          const ssize_t got = recv(peer.fd, bytes.data(), bytes.size(), MSG_TRUNC);
+                          return got < 0 ? 0 : std::size_t(got);
+                      }};
+    std::unique_ptr<HapticDevice> host =
+        makeLineBridge({BridgeLine::Kind::udp, "127.0.0.1", port}, {.asksForRealTime = false});
+};
+
 TEST(BridgeLines, UdpIsALineLikeUsb)
 {
-    const std::uint16_t port = freePort();
-    Socket              peer;
-    peer.address.sin_port = htons(port);
-    Firmware firmware(
-        [&](std::span<const std::uint8_t> bytes) {
-            static_cast<void>(!sendto(peer.fd, bytes.data(), bytes.size(), 0,
-                                      reinterpret_cast<const sockaddr*>(&peer.address), sizeof peer.address));
-        },
-        [&](std::span<std::uint8_t> bytes) {
-            const ssize_t got = recv(peer.fd, bytes.data(), bytes.size(), MSG_TRUNC);
-            return got < 0 ? 0 : std::size_t(got);
-        });
-    const auto device = makeLineBridge({BridgeLine::Kind::udp, "127.0.0.1", port}, {.asksForRealTime = false});
-    conversesAndFallsSilent(*device, firmware);
-    bearsTroubles(*device, firmware, false);
+    UdpFirmware udp;
+    conversesAndFallsSilent(*udp.host, udp.firmware);
+    bearsTroubles(*udp.host, udp.firmware, false);
+}
+
+TEST(BridgeLines, WhereTheGuardianHasEndedTheLastReportIsZero)
+{
+    UdpFirmware         udp;
+    const GovernedForce push = governed({1, 0, 0});
+    udp.host->open();
+    udp.firmware.isStubborn = true;
+    ASSERT_TRUE(until(*udp.host, push, [&](const HapticState&) { return udp.firmware.force > 0.3; }));
+    ASSERT_TRUE(signalGuardianOf(getpid(), "KILL"));
+    EXPECT_TRUE(until(*udp.host, push, [&](const HapticState& s) { return s.fault == DeviceFault::unplugged; }));
+    EXPECT_TRUE(until(*udp.host, push, [&](const HapticState&) { return udp.firmware.force == 0; }));
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    static_cast<void>(udp.host->exchange(push, seconds()));
+    EXPECT_EQ(udp.firmware.force, 0) << "and so it stays";
 }
 
 /// Whoever was not first is not heard: its reports would move the hand.
@@ -366,8 +389,7 @@ TEST(BridgeLines, AGuardianThatHasEndedIsToldOnceAndZerosStillPass)
     line->guard(kBridgeZero);
     const BridgeBytes push = encode(BridgeCommand{.enable = true, .force = {1, 0, 0}}), zero = encode(BridgeCommand{});
     EXPECT_NO_THROW(line->write(push));
-    ASSERT_EQ(std::system(("pkill -KILL -P " + std::to_string(getpid()) + " palpate-guardia").c_str()), 0)
-        << "the only child";
+    ASSERT_TRUE(signalGuardianOf(getpid(), "KILL"));
     const auto isTold = [&](const BridgeBytes& report) {
         try {
             line->write(report);

@@ -31,6 +31,7 @@
 #include "engine/core/real_time.h"
 #include "tests/device/descriptor_falcon.h"
 #include "tests/device/falcon_bench.h"
+#include "tests/device/guardian_of.h"
 #include "tests/device/zero_in_time.h"
 #include "tests/support/sanitized.h"
 
@@ -422,13 +423,6 @@ TEST_F(GuardianTest, AProgramWhoseSystemExecutesNothingOrGivesNoFileInMemoryIsTo
         };
         EXPECT_EQ(inChild(act), 0) << one.part << std::strerror(one.error);
     }
-}
-
-/// Sends its guardian, a program's only child, a signal.
-bool signalGuardianOf(pid_t program, const char* signal)
-{
-    const std::string ask = std::string("pkill -") + signal + " -P " + std::to_string(program) + " palpate-guardia";
-    return std::system(ask.c_str()) == 0;
 }
 
 TEST_F(GuardianTest, AProgramWhoseGuardianIsFrozenPushesNoMore)

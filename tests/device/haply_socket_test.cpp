@@ -8,6 +8,7 @@
 #include "device/haply/haply_record.h"
 #include "engine/core/real_time.h"
 #include "tests/device/governed.h"
+#include "tests/device/guardian_of.h"
 #include "tests/device/haply_server.h"
 #include "tests/device/zero_in_time.h"
 #include "tests/support/allocations.h"
@@ -209,6 +210,20 @@ TEST_F(HaplyGuardian, AProgramThatIsKilledLeavesZeroForce)
         end();
     }
     std::printf("  zero after %.1f ms at most\n", 1e3 * most_);
+}
+
+TEST_F(HaplyGuardian, AProgramWhoseGuardianHasEndedPushesNoMore)
+{
+    start();
+    ASSERT_TRUE(waitForForce());
+    ASSERT_TRUE(signalGuardianOf(child_, "KILL"));
+    const double killed = steadyTime();
+    server.serve(killed + 1, [&] { return !pushes(); });
+    std::printf("  zero %.1f ms after the guardian was killed\n", (steadyTime() - killed) * 1e3);
+    EXPECT_FALSE(pushes());
+    EXPECT_LT(steadyTime() - killed, 0.2) << "at the next exchange; a frozen one is missed after 0.25 s";
+    server.serve(steadyTime() + 50e-3);
+    EXPECT_FALSE(pushes()) << "and so it stays";
 }
 
 TEST_F(HaplyGuardian, AProgramThatIsStoppedLosesTheForceAndIsTold)

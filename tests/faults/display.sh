@@ -3,8 +3,8 @@
 # touches and is recorded. Arguments: palpate, and a folder that may be emptied.
 #
 # Expected each time: an exit of the program's own, one sentence, and a recording, where one was begun, that is whole.
-# PALPATE_INSTANTS says how many instants (3) beside the one that is always while a hand is recorded, PALPATE_LATEST by
-# when [s].
+# PALPATE_INSTANTS says how many instants (3) beside two that are always the same, when the window opens and while a hand is
+# recorded; PALPATE_LATEST by when [s].
 set -u
 latest=${PALPATE_LATEST:-5} # [s] after the start: by then the hand has touched for two seconds
 unset PALPATE_LATEST
@@ -45,7 +45,10 @@ attempt() {
             mousemove --window "$window" 200 130 keydown space sleep 3
     ) >/dev/null 2>&1 &
     hand=$!
-    if [ "$after" = recorded ]; then # at whatever time a hand is recorded: the one instant that is not random
+    if [ "$after" = opened ]; then
+        n=0
+        while [ -z "$(DISPLAY=:$display xdotool search --name Palpate 2>/dev/null)" ] && [ $n -lt 1200 ]; do n=$((n + 1)); sleep 0.02; done
+    elif [ "$after" = recorded ]; then # at whatever time a hand is recorded
         n=0
         while [ ! -s session-0001/ticks.npy ] && [ $n -lt 1200 ]; do n=$((n + 1)); sleep 0.1; done
         [ -s session-0001/ticks.npy ] || fail 'no session was recorded'
@@ -73,6 +76,6 @@ attempt() {
 }
 
 recorded=0
-for after in $(awk -v n="$instants" -v latest=$latest 'BEGIN { srand(); for (k = 0; k < n; ++k) print (k + rand()) / n * latest }') recorded; do attempt; done
-echo "$((instants + 1)) times the display went, $recorded times while a session was recorded; $failed times something was wrong"
+for after in $(awk -v n="$instants" -v latest=$latest 'BEGIN { srand(); for (k = 0; k < n; ++k) print (k + rand()) / n * latest }') opened recorded; do attempt; done
+echo "$((instants + 2)) times the display went, $recorded times while a session was recorded; $failed times something was wrong"
 [ $failed -eq 0 ]

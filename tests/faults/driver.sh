@@ -118,6 +118,13 @@ for call in vkAllocateMemory vkMapMemory vkBindBufferMemory vkResetFences vkQueu
     grep -q 'the host took over' err.txt && pass || complain "touch, $call: the host did not take over: $(cat err.txt)"
 done
 
+# A driver that is left at work may crash when the program's own exit handlers end it: they are not run.
+LD_DEBUG=files attempt touch memory 0 # none fails
+grep -q 'calling fini: .*embree' err.txt && pass || complain 'touch: no exit handler is told of'
+LD_DEBUG=files FAILING_LAYER_ONLY=vkWaitForFences attempt touch hang 1
+grep -q 'calling fini: .*embree' err.txt && complain 'touch, a driver that is left at work: exit handlers are run' || pass
+grep -q 'the host took over' err.txt && pass || complain "touch, a wait without end: the host did not take over"
+
 # And to what a window makes for its pictures: it went on without images that could not be made, and asked for panels twice.
 case $commands in
 *view*)

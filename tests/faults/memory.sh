@@ -28,7 +28,19 @@ judge() { # NAME STATUS
     pass
 }
 
+attempt() { # NAME WAY N ARGUMENTS...
+    name=$1 fails=FAILING_MALLOC_$2=$3
+    shift 3
+    rm -rf recorded recorded.ply
+    env LD_PRELOAD="$failing" "$fails" timeout -s KILL 60 "$palpate" "$@" >out.txt 2>err.txt </dev/null
+    judge "$name, $fails" $?
+}
+
 commands | {
+    # Before main, and while the command line is made: requests of objects that are made at all times, and promise not to throw.
+    n=1
+    # shellcheck disable=SC2086
+    while [ $n -le 40 ]; do attempt touch AT $n touch $sheet; n=$((n + 1)); done
     while read -r name arguments; do
         rm -rf recorded recorded.ply
         # shellcheck disable=SC2086
@@ -36,12 +48,8 @@ commands | {
         calls=$(cat count) n=0
         [ "$calls" -gt 1000 ] || complain "$name asks for memory $calls times only: are its requests counted?"
         while [ $n -lt "$instants" ]; do
-            for way in AT FROM; do
-                rm -rf recorded recorded.ply
-                # shellcheck disable=SC2086
-                env LD_PRELOAD="$failing" FAILING_MALLOC_$way=$(((2 * n + 1) * calls / (2 * instants) + 1)) timeout -s KILL 60 "$palpate" $arguments >out.txt 2>err.txt </dev/null
-                judge "$name, FAILING_MALLOC_$way=$(((2 * n + 1) * calls / (2 * instants) + 1))" $?
-            done
+            # shellcheck disable=SC2086
+            for way in AT FROM; do attempt "$name" $way $(((2 * n + 1) * calls / (2 * instants) + 1)) $arguments; done
             n=$((n + 1))
         done
     done

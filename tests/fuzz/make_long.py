@@ -193,8 +193,14 @@ def of_json(lists):
 
 
 def same(count):
-    """Rows that differ but for one."""
-    return text(count) + "0 0 0\n"
+    """Rows that differ but for one; many, because a reader may take half a megabyte whatever it reads."""
+    return text(10 * count) + "0 0 0\n"
+
+
+def faces(count):
+    """As many lists of faces as faces: whoever makes room for each list alone moves all the earlier ones."""
+    element = "element face 1\nproperty list uchar int vertex_indices\n"
+    return ply(4).split("element face")[0] + element * count + "end_header\n" + "".join("%g %g %g %g\n" % p for p in points(4)) + "3 0 1 2\n" * count
 
 
 def bits(count):
@@ -220,7 +226,7 @@ def cells_of_nothing(count):
 
 # What single readers once took too long for, or too much memory.
 SHAPES = {
-    ("text", "same"): same, ("ply", "bits"): bits, ("probes", "single"): single,
+    ("text", "same"): same, ("ply", "bits"): bits, ("ply", "faces"): faces, ("probes", "single"): single,
     ("trials", "conditions"): conditions, ("trials", "short"): cells_of_nothing,
     ("vtk", "parts"): lambda count: vtk(9).split("POINT_DATA")[0] + "CELLS 0 0\n" * count,
     ("recording", "keys"): lambda count: 's{"format": 1, "clock": "virtual", "device": "host", "command": "palpate", "scene": {%s}}'

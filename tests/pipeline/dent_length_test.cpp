@@ -111,6 +111,22 @@ TEST(DentLength, MembraneAndFoundationAddUp)
     EXPECT_NEAR(dentLengths(sphere(50e-3), settings)->typical / lengthOf(50e-3), 1, 1e-9) << "the membrane is off";
 }
 
+TEST(DentLength, WhereAWindowIsTooDeepAndASheetTooThickIsKnownBeforeATouch)
+{
+    const auto in = [](const SoftObject& object, double window) { return beyondShell(object, shell(), window); };
+    // A sphere sags by W / (8 R) of a window's width: by a fourth where it is 2 R wide.
+    const SoftObject ball = sphere(50e-3);
+    EXPECT_EQ(in(ball, 95e-3).deep, 0);
+    EXPECT_EQ(in(ball, 105e-3).deep, 1);
+    EXPECT_EQ(in(ball, 105e-3).thick, 0) << "1 mm of 50";
+    EXPECT_EQ(in(sphere(9e-3), 5e-3).thick, 1) << "1 mm of 9";
+    EXPECT_EQ(in(sheet([](double, double) { return 0; }), 1).deep, 0) << "a plane never sags";
+    // A roof of two planes: the fits see a ridge within their radius of its edge, on a part of the surface.
+    const double ridge = in(sheet([](double x, double) { return -std::abs(x); }), 40e-3).deep;
+    EXPECT_GT(ridge, 0.05);
+    EXPECT_LT(ridge, 0.6);
+}
+
 TEST(DentLength, IsUnknownWhereTheSupportDecides)
 {
     EXPECT_FALSE(dentLengths(sheet([](double, double) { return 0; }), shell()));

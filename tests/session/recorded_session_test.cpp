@@ -7,6 +7,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "engine/session/recording.h"
 #include "engine/session/replay_device.h"
@@ -257,6 +258,19 @@ TEST_F(SessionFolder, OneWithoutTheGripIsReadAsAHandThatHasNone)
     EXPECT_EQ(session.records[7].grip, 0);
     EXPECT_EQ(session.records[7].answers, recordNumber(7).answers);
     EXPECT_EQ(compareSessions(session, made("b", 100)), std::nullopt) << "it is not compared";
+}
+
+TEST_F(SessionFolder, APipeInThePlaceOfAFileIsNotWaitedFor)
+{
+    for (const char* const name : {"session.json", "markers.jsonl", "ticks.npy"}) {
+        const std::string whole = contentsOf(run / name);
+        std::filesystem::remove(run / name);
+        ASSERT_EQ(::mkfifo((run / name).c_str(), 0666), 0);
+        EXPECT_TRUE(holds(refusal(), {name, "found a pipe"})) << refusal();
+        std::filesystem::remove(run / name);
+        put(name, whole);
+    }
+    EXPECT_EQ(refusal(), "");
 }
 
 TEST_F(SessionFolder, AHeaderWithAnyOneByteWrongIsRefusedOrReadAndNothingElse)

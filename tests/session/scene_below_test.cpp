@@ -371,6 +371,12 @@ Scene onFoundation(const std::string& foundation, const std::string& below, cons
                       {.flags = {{"cloud", cloud}, {"foundation", foundation + " MPa/m"}, {"below", below}}});
 }
 
+TEST(Below, ListsWithinListsAreLeftToTheReaderWhoRefusesThem)
+{
+    const std::string below = R"({"volume": )" + std::string(200'000, '[') + std::string(200'000, ']') + "}";
+    EXPECT_EQ(belowWithFileIn(below, "/a"), below) << "the library of JSON prints by recursion";
+}
+
 TEST(Below, ALawOfTheFoundationIsFeltAsItsValue)
 {
     const Scene  plain = onFoundation("2", "none");

@@ -19,12 +19,6 @@ double milliseconds(clockid_t clock)
     return double(now.tv_sec) * 1e3 + double(now.tv_nsec) * 1e-6;
 }
 
-Clock clockOf(compute::ProcessorKind kind)
-{
-    return kind == compute::ProcessorKind::software || kind == compute::ProcessorKind::host ? Clock::processor
-                                                                                            : Clock::wall;
-}
-
 } // namespace
 
 double threadMilliseconds()
@@ -58,6 +52,12 @@ Quartiles quartiles(std::vector<double> values)
         return values[below] + share * (values[std::min(below + 1, values.size() - 1)] - values[below]);
     };
     return {at(0.25), at(0.5), at(0.75)};
+}
+
+Clock clockOf(compute::ProcessorKind kind)
+{
+    return kind == compute::ProcessorKind::software || kind == compute::ProcessorKind::host ? Clock::processor
+                                                                                            : Clock::wall;
 }
 
 Clock clockOf(const compute::Context& context)

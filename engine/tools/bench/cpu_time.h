@@ -8,7 +8,8 @@ class PlateSolver;
 }
 namespace palp::compute {
 class Context;
-}
+enum class ProcessorKind;
+} // namespace palp::compute
 
 namespace palp::bench {
 
@@ -35,6 +36,7 @@ enum class Clock {
 };
 
 [[nodiscard]] double now(Clock clock); ///< [ms]
+[[nodiscard]] Clock  clockOf(compute::ProcessorKind kind);
 [[nodiscard]] Clock  clockOf(const compute::Context& context);
 [[nodiscard]] Clock  clockOf(const PlateSolver& solver); ///< by the processor that it has opened
 

@@ -113,6 +113,21 @@ std::string onDents(const QualityReport& r)
                                                : ", so that its edges are felt: the object is no wider");
 }
 
+/// Says on how much of the surface a touch warns of its theory; empty where that is hardly any.
+std::string onBeyond(const BeyondShell& beyond)
+{
+    constexpr double  kSome = 0.02; // of the surface [1]
+    const std::string deep  = "the patch window sags by more than a fourth of its width",
+                      thick = "the sheet is thicker than a tenth of its radius of curvature";
+    const auto        on    = [](double share) { return "on " + percentText(share) + " of the surface "; };
+    const std::string end   = ": there touch says what that may do to its answer";
+    if (beyond.deep > kSome && beyond.thick > kSome)
+        return on(beyond.deep) + deep + ", " + on(beyond.thick) + thick + end;
+    return beyond.deep > kSome    ? on(beyond.deep) + deep + end
+           : beyond.thick > kSome ? on(beyond.thick) + thick + end
+                                  : "";
+}
+
 std::vector<double> noiseInSpacings(const SurfaceSurvey& survey, std::size_t points)
 {
     std::vector<double> values(points);
@@ -145,16 +160,19 @@ SideSources sideSources(const SoftObject& object, bool byNormals)
 
 QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene)
 {
-    const bool isShell = scene.patch.theory == Theory::shell;
+    const bool   isShell = scene.patch.theory == Theory::shell;
+    const double window  = settledFor(object, scene.patch).window;
     return {cloudQuality(object),
             sideSources(object, !loaded.normals.empty()),
             loaded.report.coordinateRounding,
             scene.patch.footprintRadius,
-            settledFor(object, scene.patch).window,
+            window,
             object.cloud().bounds().diagonal(),
             {},
             isShell ? dentLengths(object, scene.patch) : std::nullopt,
             whyDentWindow(object, scene.patch),
+            isShell && scene.patch.windowOf != WindowOf::object ? beyondShell(object, scene.patch, window)
+                                                                : BeyondShell{},
             isShell ? sparseForCurvature(object) : ""};
 }
 
@@ -179,6 +197,7 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
         said.push_back(onDents(r));
     else if (!r.whyWindow.empty())
         said.push_back("the patch window is " + r.whyWindow);
+    if (const std::string beyond = onBeyond(r.beyond); !beyond.empty()) said.push_back(beyond);
     if (!r.sparse.empty()) said.push_back(r.sparse);
     if (q.noisy95 > kNoisySpacings) said.push_back(onNoise(q));
     if (q.noise > r.fingertip / 4)
@@ -238,6 +257,7 @@ nlohmann::json jsonOf(const QualityReport& r)
             {"dent_lengths",
              r.dents ? nlohmann::json{{"min", r.dents->least}, {"median", r.dents->typical}, {"max", r.dents->most}}
                      : nlohmann::json(nullptr)},
+            {"beyond_shell_theory", {{"deep", r.beyond.deep}, {"thick", r.beyond.thick}}},
             {"for_touch", meaningForTouch(r)}};
 }
 

@@ -34,6 +34,7 @@ struct QualityReport {
     /// Over which dents die away by themselves; empty: they do not, or the theory is not a shell's.
     std::optional<DentLengths> dents{};
     std::string                whyWindow{}; ///< whyDentWindow()
+    BeyondShell                beyond{};    ///< in patch windows; of shells whose window is not all of the object
     std::string                sparse{};    ///< sparseForCurvature(), of shells
 };
 

@@ -2,6 +2,7 @@
 #include "engine/tools/study/study_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"
 
@@ -30,6 +31,13 @@ TEST(StudyFiles, OlderOnesNameNeitherHandNorClock)
     EXPECT_EQ(read.participant, "p");
     EXPECT_FALSE(read.hand || read.clock);
     EXPECT_TRUE(read.feltStiffness.empty());
+}
+
+TEST(StudyFiles, APipeInItsPlaceIsNotWaitedFor)
+{
+    const TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "study.json").c_str(), 0666), 0);
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readStudyFile(folder.path())); }), {"found a pipe"}));
 }
 
 TEST(StudyFiles, AMistakeIsNamed)

@@ -1,6 +1,7 @@
 #include "engine/tools/study/trial_table.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"
 
@@ -57,6 +58,13 @@ TEST(TrialTable, GivesBackWhatWasAppendedAlsoCommasQuotesAndEmptyCells)
 }
 
 /// Cut anywhere within the last row, as by a crash: the rows before it stay, and the next one follows them.
+TEST(TrialTable, APipeInItsPlaceIsNotWaitedFor)
+{
+    const TemporaryFolder folder;
+    ASSERT_EQ(::mkfifo((folder / "trials.csv").c_str(), 0666), 0);
+    EXPECT_TRUE(holds(refusalOf([&] { TrialTable table(folder / "trials.csv"); }), {"found a pipe"}));
+}
+
 TEST(TrialTable, ATornLastRowIsRemovedWhereverItWasTorn)
 {
     const TemporaryFolder folder;
