@@ -47,8 +47,9 @@ while IFS='	' read -r page target; do
 done <"$work"
 
 grep -rhoE '^TEST(_F|_P)?\([A-Za-z0-9]+, [A-Za-z0-9]+\)' tests --include='*.cpp' | sed 's/^[A-Z_]*(\(.*\), \(.*\))$/\1.\2/' >"$work"
+set -f # no name of a test is a file's
 for page in "$@"; do
-    for test in $(tr -c 'A-Za-z0-9.`*' '\n' <"$page" | sed -n 's/^`\([A-Z][A-Za-z0-9]*\.[A-Z*][A-Za-z0-9*]*\)`.*/\1/p' | sort -u); do
+    for test in $(tr -c 'A-Za-z0-9.`*/' '\n' <"$page" | sed -n 's/^`\([A-Z][A-Za-z0-9]*\.[A-Z*][A-Za-z0-9*]*\)\(\/[A-Za-z0-9]*\)\{0,1\}`.*/\1/p' | sort -u); do
         pattern=$(echo "$test" | sed 's/\./\\./; s/\*/[A-Za-z0-9]*/g')
         grep -qxE "$pattern" "$work" || { echo "$page names the test $test, which does not exist"; bad=1; }
     done

@@ -299,11 +299,16 @@ void HaplyLine::close() noexcept
 
 void HaplyLine::letGo() noexcept
 {
-    try {
-        if (pushes_) client_->sendForce(haplyCommand(id_, dialect_, glm::dvec3(0)));
-        pushes_ = false;
-        if (!id_.empty()) client_->sendForce(haplyCommand(id_, dialect_, {}));
-    } catch (const std::exception&) { // the line takes nothing any more: silence is zero for the service
+    for (int n = 0; n < 2; ++n) {
+        try {
+            if (pushes_) client_->sendForce(haplyCommand(id_, dialect_, glm::dvec3(0)));
+            pushes_ = false;
+            if (!id_.empty()) client_->sendForce(haplyCommand(id_, dialect_, {}));
+            return;
+        } catch (const GuardianEnded&) {  // told once, and stops one packet
+        } catch (const std::exception&) { // the line takes nothing any more: silence is zero for the service
+            return;
+        }
     }
 }
 
@@ -443,9 +448,10 @@ void HaplyLine::checkEcho()
 
 void HaplyLine::say(const LineOrder& order, double now)
 {
-    pushes_ = order.enable;
-    sent_   = order.enable ? glm::length(order.force) : 0;
+    pushes_ = pushes_ || order.enable; // until what says otherwise has gone out
     client_->sendForce(haplyCommand(id_, dialect_, order.enable ? std::optional(order.force) : std::nullopt));
+    pushes_   = order.enable;
+    sent_     = order.enable ? glm::length(order.force) : 0;
     inFlight_ = true;
     asked_    = now;
     if (client_->line().wasSilenced()) ++silenced_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
@@ -238,10 +239,13 @@ void HidBridgeDevice::run(const std::stop_token& stop) noexcept
 /// Says that there is no force, also where the device is taken as gone: perhaps only its guardian is.
 void HidBridgeDevice::sayZero() noexcept
 {
-    try {
-        for (int n = 0; n < kZeros; ++n) send({});
-    } catch (const HidLost&) {
-        seen_.lost = true; // its own watchdog then stops it
+    for (int n = 0; n < kZeros; ++n) {
+        try {
+            send({});
+        } catch (const HidLost&) {
+            // That the guardian has ended stops one report. A device that has gone is stopped by its own watchdog.
+            if (std::exchange(seen_.lost, true)) return;
+        }
     }
 }
 

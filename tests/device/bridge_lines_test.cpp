@@ -288,6 +288,15 @@ TEST(BridgeLines, WhereTheGuardianHasEndedTheLastReportIsZero)
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
     static_cast<void>(udp.host->exchange(push, seconds()));
     EXPECT_EQ(udp.firmware.force, 0) << "and so it stays";
+    udp.host->close();
+
+    udp.host->open(); // where closing is the first to meet it
+    ASSERT_TRUE(until(*udp.host, push, [&](const HapticState&) { return udp.firmware.force > 0.3; }));
+    ASSERT_TRUE(signalGuardianOf(getpid(), "KILL"));
+    udp.host->close();
+    for (const double end = seconds() + 5; udp.firmware.force != 0 && seconds() < end;)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    EXPECT_EQ(udp.firmware.force, 0);
 }
 
 /// Whoever was not first is not heard: its reports would move the hand.

@@ -189,7 +189,7 @@ for checks in ${enable}_SYNCHRONIZATION_VALIDATION_EXT ${enable}_GPU_ASSISTED_EX
     number=$((number + 1))
     xdotool windowfocus --sync "$window" key --window "$window" F5
     until_ 'a recording of plates by Vulkan' $long test -s session-000$number/ticks.npy
-    xdotool mousemove --window "$window" 420 260 keydown space sleep 4 mousemove --window "$window" 430 260 sleep 2 keyup space sleep 0.5
+    xdotool mousemove --window "$window" 420 260 keydown space sleep 8 mousemove --window "$window" 430 260 sleep 2 keyup space sleep 0.5
     xdotool key --window "$window" F5 sleep 0.5
     "$client" "$window" close || fail 'the window of plates by Vulkan cannot be asked to close'
     ended 'closing the window of plates by Vulkan'
