@@ -6,6 +6,7 @@
 #include <array>
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
@@ -250,6 +251,13 @@ std::uint16_t freePort()
     return ntohs(probe.address.sin_port);
 }
 
+/// Kills this program's guardian, its only child.
+bool killGuardian()
+{
+    const pid_t guardian = guardianOf(getpid());
+    return guardian > 0 && kill(guardian, SIGKILL) == 0;
+}
+
 /// A device by UDP.
 struct UdpFirmware {
     std::uint16_t                 port = freePort();
@@ -282,7 +290,7 @@ TEST(BridgeLines, WhereTheGuardianHasEndedTheLastReportIsZero)
     udp.host->open();
     udp.firmware.isStubborn = true;
     ASSERT_TRUE(until(*udp.host, push, [&](const HapticState&) { return udp.firmware.force > 0.3; }));
-    ASSERT_TRUE(signalGuardianOf(getpid(), "KILL"));
+    ASSERT_TRUE(killGuardian());
     EXPECT_TRUE(until(*udp.host, push, [&](const HapticState& s) { return s.fault == DeviceFault::unplugged; }));
     EXPECT_TRUE(until(*udp.host, push, [&](const HapticState&) { return udp.firmware.force == 0; }));
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
@@ -292,7 +300,7 @@ TEST(BridgeLines, WhereTheGuardianHasEndedTheLastReportIsZero)
 
     udp.host->open(); // where closing is the first to meet it
     ASSERT_TRUE(until(*udp.host, push, [&](const HapticState&) { return udp.firmware.force > 0.3; }));
-    ASSERT_TRUE(signalGuardianOf(getpid(), "KILL"));
+    ASSERT_TRUE(killGuardian());
     udp.host->close();
     for (const double end = seconds() + 5; udp.firmware.force != 0 && seconds() < end;)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -398,7 +406,7 @@ TEST(BridgeLines, AGuardianThatHasEndedIsToldOnceAndZerosStillPass)
     line->guard(kBridgeZero);
     const BridgeBytes push = encode(BridgeCommand{.enable = true, .force = {1, 0, 0}}), zero = encode(BridgeCommand{});
     EXPECT_NO_THROW(line->write(push));
-    ASSERT_TRUE(signalGuardianOf(getpid(), "KILL"));
+    ASSERT_TRUE(killGuardian());
     const auto isTold = [&](const BridgeBytes& report) {
         try {
             line->write(report);

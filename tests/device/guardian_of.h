@@ -1,16 +1,22 @@
 #pragma once
-#include <cstdlib>
+#include <csignal>
+#include <cstdio>
 #include <string>
 
 #include <sys/types.h>
 
 namespace palp {
 
-/// Sends its guardian, a program's only child, a signal.
-inline bool signalGuardianOf(pid_t program, const char* signal)
+/// Returns the process of its guardian, a program's only child; -1 if there is none. It takes milliseconds.
+inline pid_t guardianOf(pid_t program)
 {
-    const std::string ask = std::string("pkill -") + signal + " -P " + std::to_string(program) + " palpate-guardia";
-    return std::system(ask.c_str()) == 0;
+    pid_t             found = -1;
+    const std::string ask   = "pgrep -P " + std::to_string(program) + " palpate-guardia";
+    if (std::FILE* const answer = ::popen(ask.c_str(), "r")) {
+        if (std::fscanf(answer, "%d", &found) != 1) found = -1;
+        ::pclose(answer);
+    }
+    return found;
 }
 
 } // namespace palp

@@ -431,13 +431,15 @@ TEST_F(GuardianTest, AProgramWhoseGuardianIsFrozenPushesNoMore)
     SharedMemory<Fate> fate;
     const pid_t        child = start(falcon, *fate);
     ASSERT_TRUE(waitForForce(falcon));
-    ASSERT_TRUE(signalGuardianOf(child, "STOP"));
+    const pid_t guardian = guardianOf(child);
+    ASSERT_GT(guardian, 0);
+    kill(guardian, SIGSTOP);
     const double from = steadyTime();
     falcon.serve(from + 1, [&] { return !falcon.pushes() && steadyTime() - from > 0.2; });
     std::printf("  zero %.0f ms after the guardian was frozen\n", (falcon.zeroSince() - from) * 1e3);
     EXPECT_FALSE(falcon.pushes());
     EXPECT_LT(falcon.zeroSince() - from, 0.35) << "0.25 s, and a tenth for a busy machine";
-    signalGuardianOf(child, "KILL");
+    kill(guardian, SIGKILL);
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
 }
@@ -448,7 +450,9 @@ TEST_F(GuardianTest, AProgramWhoseGuardianHasEndedPushesNoMore)
     SharedMemory<Fate> fate;
     const pid_t        child = start(falcon, *fate);
     ASSERT_TRUE(waitForForce(falcon));
-    ASSERT_TRUE(signalGuardianOf(child, "KILL"));
+    const pid_t guardian = guardianOf(child);
+    ASSERT_GT(guardian, 0);
+    kill(guardian, SIGKILL);
     const double from = steadyTime();
     falcon.serve(from + 1, [&] { return !falcon.pushes(); });
     std::printf("  zero %.1f ms after the guardian was killed\n", (steadyTime() - from) * 1e3);
