@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/core/json_depth.h"
+#include "engine/core/json_limits.h"
 
 namespace palp {
 namespace {
@@ -222,7 +222,7 @@ void EmulatedHaply::Peer::answerHttp(const HttpHead& head)
 void EmulatedHaply::Peer::obey(const std::string& message)
 {
     ++service_.requests_;
-    const Json request   = tooDeepAt(message) ? Json() : Json::parse(message, nullptr, false);
+    const Json request   = excessOf(message) ? Json() : Json::parse(message, nullptr, false);
     const bool wantsFull = request.contains("/session/force_render_full_state"_json_pointer);
     const auto profile   = "/session/configure/profile/name"_json_pointer;
     if (request.contains(profile)) service_.profile_ = request[profile].get<std::string>();

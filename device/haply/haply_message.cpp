@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_limits.h"
 
 namespace palp {
 namespace {
@@ -27,7 +27,7 @@ constexpr std::string_view kForceWord  = "\"set_cursor_force\"";
 /// Parses without exceptions; a discarded value is not understood.
 Json parsed(std::string_view text)
 {
-    return tooDeepAt(text) ? Json(Json::value_t::discarded) : Json::parse(text, nullptr, false);
+    return excessOf(text) ? Json(Json::value_t::discarded) : Json::parse(text, nullptr, false);
 }
 
 /// Returns what lies at a path of keys; null if nothing does.

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_limits.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/shown_text.h"
 
@@ -100,7 +100,8 @@ std::string numbersInWords(std::size_t count)
 } // namespace
 
 struct JsonObject::Node {
-    Json value;
+    std::shared_ptr<const Json> whole; ///< of which an object is a part, and no copy
+    const Json&                 value;
 
     /// Returns the value of a key that must be there.
     [[nodiscard]] const Json& at(std::string_view key, const std::string& where) const
@@ -113,22 +114,21 @@ struct JsonObject::Node {
 
 JsonObject JsonObject::parse(std::string_view text, std::string where)
 {
-    if (const auto deep = tooDeepAt(text))
-        throw Error(where + ": line " + std::to_string(1 + std::ranges::count(text.substr(0, *deep), '\n')) +
-                    ": expected lists and objects of JSON in at most " + std::to_string(kDeepestJson) +
-                    " levels, found more; is a bracket missing?");
-    auto node = std::make_shared<Node>();
+    if (const auto excess = excessOf(text))
+        throw Error(where + ": line " + std::to_string(1 + std::ranges::count(text.substr(0, excess->at), '\n')) +
+                    ": " + std::string(excess->what));
+    RefuseTwins twins(where); // before the values take memory, too
+    Json::sax_parse(text.begin(), text.end(), &twins, Json::input_format_t::json, true, true); // whole, with comments
+    auto whole = std::make_shared<Json>();
     try {
         constexpr bool kThrow = true, kIgnoreComments = true;
-        node->value = Json::parse(text.begin(), text.end(), nullptr, kThrow, kIgnoreComments);
+        *whole = Json::parse(text.begin(), text.end(), nullptr, kThrow, kIgnoreComments);
     } catch (const Json::exception& failure) {
         throw Error(where + ": not valid JSON: " + reasonOf(failure));
     }
-    RefuseTwins twins(where);
-    Json::sax_parse(text.begin(), text.end(), &twins, Json::input_format_t::json, true, true); // whole, with comments
-    if (!node->value.is_object())
-        throw Error(where + ": expected a JSON object {...}, found " + std::string(node->value.type_name()));
-    return JsonObject(std::move(node), std::move(where));
+    if (!whole->is_object())
+        throw Error(where + ": expected a JSON object {...}, found " + std::string(whole->type_name()));
+    return JsonObject(std::make_shared<Node>(Node{whole, *whole}), std::move(where));
 }
 
 void JsonObject::allowOnly(std::initializer_list<std::string_view> known) const
@@ -174,7 +174,7 @@ JsonObject JsonObject::object(std::string_view key) const
 {
     const Json& value = node_->at(key, where_);
     if (!value.is_object()) refuse(key, "an object {...}");
-    return JsonObject(std::make_shared<Node>(Node{value}), where_ + ": " + std::string(key));
+    return JsonObject(std::make_shared<Node>(Node{node_->whole, value}), where_ + ": " + std::string(key));
 }
 
 std::string JsonObject::text(std::string_view key) const
@@ -240,7 +240,7 @@ std::vector<JsonObject> JsonObject::objects(std::string_view key, std::size_t mo
         const std::string name = where_ + ": " + what + " " + std::to_string(all.size() + 1);
         if (!one.is_object())
             throw Error(name + ": expected a JSON object {...}, found " + std::string(one.type_name()));
-        all.push_back(JsonObject(std::make_shared<Node>(Node{one}), name));
+        all.push_back(JsonObject(std::make_shared<Node>(Node{node_->whole, one}), name));
     }
     return all;
 }

@@ -19,7 +19,7 @@ class JsonObject {
 public:
     /// Parses a text.
     /// \param where  name of the text that begins every error, such as a file's path
-    /// \throws Error with line and column if the text is not JSON, not an object, or nests deeper than kDeepestJson
+    /// \throws Error with line and column if the text is not JSON, not an object, or too much (see excessOf)
     static JsonObject parse(std::string_view text, std::string where);
 
     enum class Kind { text, number, list, object, other };

@@ -12,7 +12,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_limits.h"
 #include "engine/core/json_object.h"
 #include "engine/core/volume_grid.h"
 
@@ -364,7 +364,7 @@ std::string lawWithFileIn(const std::string& text, const std::filesystem::path& 
     if (text.find("grid") == std::string::npos) return text;
     try {
         const std::string json = asJson(text);
-        if (tooDeepAt(json)) return text; // as below
+        if (excessOf(json)) return text; // as below
         nlohmann::json law = nlohmann::json::parse(json, nullptr, true, true);
         if (law.value("law", "") != "grid" || !law.contains("file") || !law["file"].is_string()) return text;
         law["file"] = (folder / law["file"].get<std::string>()).lexically_normal().string();

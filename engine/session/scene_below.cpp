@@ -4,7 +4,7 @@
 
 #include "engine/cloud/soft_object.h"
 #include "engine/core/contract.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_limits.h"
 #include "engine/core/json_object.h"
 #include "engine/core/quantity.h"
 #include "engine/session/scene.h"
@@ -140,7 +140,7 @@ std::string_view belowSchema()
 
 std::string belowWithFileIn(const std::string& text, const std::filesystem::path& folder)
 {
-    if (tooDeepAt(text)) return text; // whoever reads it refuses it
+    if (excessOf(text)) return text; // whoever reads it refuses it
     try {
         nlohmann::json below =
             nlohmann::json::parse(text, nullptr, true, true); // in order each key is looked for in all

@@ -15,7 +15,7 @@
 #include "engine/cloud/detail/face_rows.h"
 #include "engine/cloud/detail/scalar_type.h"
 #include "engine/core/counted.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_limits.h"
 
 // A reader of our own, because of glTF only positions, indices and nodes matter here, and all of a hostile file is
 // checked in one place.
@@ -58,9 +58,8 @@ Glb readChunks(ByteReader& reader)
         reader.fail("byte 12: expected at most " + std::to_string(std::min(kMostJson, reader.remaining())) +
                     " bytes of JSON, found " + std::to_string(jsonLength));
     const auto* const text = reinterpret_cast<const char*>(reader.take(jsonLength));
-    if (const auto deep = tooDeepAt({text, jsonLength}))
-        reader.fail("byte " + std::to_string(20 + *deep) + ": expected lists and objects of JSON in at most " +
-                    std::to_string(kDeepestJson) + " levels, found more; is the file damaged?");
+    if (const auto excess = excessOf({text, jsonLength}, reader.size()))
+        reader.fail("byte " + std::to_string(20 + excess->at) + ": " + std::string(excess->what));
     try {
         glb.json = Json::parse(text, text + jsonLength);
     } catch (const Json::exception&) {

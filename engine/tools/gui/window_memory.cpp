@@ -8,7 +8,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
-#include "engine/core/json_depth.h"
+#include "engine/core/json_limits.h"
 
 namespace palp {
 namespace {
@@ -30,7 +30,7 @@ nlohmann::json remembered()
 try {
     constexpr std::size_t kLargest = 1 << 20; // [bytes]
     const std::string     text     = readWhole(fileOf(), kLargest, "what windows remember", Pipes::refused);
-    auto                  read     = tooDeepAt(text) ? nlohmann::json() : nlohmann::json::parse(text, nullptr, false);
+    auto                  read     = excessOf(text) ? nlohmann::json() : nlohmann::json::parse(text, nullptr, false);
     return read.is_object() ? read : nlohmann::json::object();
 } catch (const Error&) {
     return nlohmann::json::object();

@@ -17,7 +17,9 @@
 namespace palp::study {
 namespace {
 
-constexpr std::size_t kLargestFile = std::size_t(64) << 20; ///< [bytes] of a table: 100 000 trials
+constexpr std::size_t kLargestFile = std::size_t(64) << 20; ///< [bytes] of a table
+constexpr std::size_t kMostTrials  = 100'000;               ///< of a table; each takes 430 bytes of memory
+const std::string     kMostInWords = std::to_string(kMostTrials) + " trials";
 
 struct Column {
     const char* name;
@@ -177,12 +179,12 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
         throw Error(file.string() + ": line 1: expected the columns " + head.substr(0, head.size() - 1) +
                     ", found others");
     std::vector<TrialRow> rows;
-    constexpr std::size_t kShortest = 30; // [bytes] of a row that has sense
-    rows.reserve(std::min(std::size_t(std::ranges::count(text, '\n')), text.size() / kShortest)); // they are large
+    rows.reserve(std::min(std::size_t(std::ranges::count(text, '\n')), kMostTrials)); // they are large
     std::size_t number = 2;
     for (std::size_t begin = head.size(); begin < text.size(); ++number) {
         const std::size_t end   = text.find('\n', begin);
         const std::string where = file.string() + ": line " + std::to_string(number);
+        if (rows.size() == kMostTrials) throw Error(where + ": expected at most " + kMostInWords + ", found more");
         rows.push_back(rowOf(std::string_view(text).substr(begin, end - begin), where));
         demandSense(rows.back(), rows.size(), where);
         begin = end + 1;
@@ -226,6 +228,8 @@ TrialTable::TrialTable(std::filesystem::path file) : file_(std::move(file))
 
 void TrialTable::append(const TrialRow& row)
 {
+    if (rows_.size() == kMostTrials)
+        throw Error(file_.string() + ": it has " + kMostInWords + ", which is the most; begin another study");
     appendNow(file_, line([&](const Column& column) { return column.write(row); }));
     rows_.push_back(row);
 }

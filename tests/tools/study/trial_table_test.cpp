@@ -1,5 +1,8 @@
 #include "engine/tools/study/trial_table.h"
 
+#include <filesystem>
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -55,6 +58,27 @@ TEST(TrialTable, GivesBackWhatWasAppendedAlsoCommasQuotesAndEmptyCells)
     const TrialTable again(folder / "trials.csv");
     ASSERT_EQ(again.rows().size(), 3u);
     for (std::uint64_t n = 1; n <= 3; ++n) demandSame(again.rows()[n - 1], rowNumber(n));
+}
+
+TEST(TrialTable, OfMoreThanAHundredThousandTrialsIsRefusedAndNotWritten)
+{
+    const TemporaryFolder folder;
+    const auto            file = folder / "trials.csv";
+    {
+        TrialTable table(file);
+    }
+    {
+        std::ofstream out(file, std::ios::app);
+        for (int n = 1; n <= 100'000; ++n) out << "p," << n << ",1,r,rating,c,,q,4,,1,7,s,,1,1,v\n";
+    }
+    TrialTable table(file);
+    const auto size = std::filesystem::file_size(file);
+    ASSERT_EQ(table.rows().size(), 100'000u);
+    EXPECT_TRUE(holds(refusalOf([&] { table.append(rowNumber(100'001)); }), {"trials.csv", "100000 trials"}));
+    EXPECT_EQ(std::filesystem::file_size(file), size) << "a table that nobody can read is not written";
+    std::ofstream(file, std::ios::app) << "p,100001,1,r,rating,c,,q,4,,1,7,s,,1,1,v\n";
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readTrials(file)); }),
+                      {"trials.csv: line 100002", "at most 100000 trials"}));
 }
 
 /// Cut anywhere within the last row, as by a crash: the rows before it stay, and the next one follows them.
