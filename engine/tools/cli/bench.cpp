@@ -168,8 +168,9 @@ void runBench(const BenchOptions& o)
     becomeBenchmark();
     const BenchReport report = measure(o);
     if (report.rows.empty())
-        throw Error("--nodes: nothing to measure: new_map, new_load and contrast begin at 65 nodes, update, table and "
-                    "shell are for 65 to 129");
+        throw Error(
+            "--nodes, --maps: nothing to measure: new_map, new_load and contrast begin at 65 nodes, new_load is for "
+            "smooth maps, update, table and shell are for 65 to 129 nodes");
     if (!o.out.empty()) {
         makeFolder(o.out);
         const std::filesystem::path folder = o.out;

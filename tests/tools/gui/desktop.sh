@@ -4,6 +4,7 @@
 # well, a second time with shaders that check each access. Arguments: palpate, a folder that may be emptied, and
 # palp_desktop_client, which closes the window as a window manager does and lets files fall on it as a file manager does.
 set -u
+here=$(cd "$(dirname "$0")" && pwd)
 palpate=$1 work=$2 client=$3
 for tool in Xvfb xdotool "$client"; do
     command -v "$tool" >/dev/null 2>&1 || { echo "$tool is missing"; exit 77; }
@@ -32,6 +33,7 @@ long=120 # [s] for what takes a second: an instrumented program beside others ha
 failed=0 solver=host # a patch takes lavapipe as long as some pictures
 validate=--validate  # the pictures' device
 fail() { echo "FAILED: $*"; failed=1; }
+. "$here/../../support/validation_layer.sh"
 # waits until something holds: description, seconds, command
 until_() {
     what=$1 patience=$2
@@ -170,19 +172,9 @@ kill -TERM "$program"
 ended 'being told to end'
 
 # Plates and pictures on one Vulkan driver, with a hand that feels them. The environment brings the layer, to both.
-layer() { # its checks, comma-separated; what it says stands in layer.txt
-    rm -f layer.txt
-    printf 'khronos_validation.%s\n' 'debug_action = VK_DBG_LAYER_ACTION_LOG_MSG' "log_filename = $work/layer.txt" \
-        'report_flags = error,warn,perf' "enables = $1" >layer_settings.txt
-    VK_LAYER_SETTINGS_PATH=$work/layer_settings.txt VK_INSTANCE_LAYERS=VK_LAYER_KHRONOS_validation
-    export VK_LAYER_SETTINGS_PATH VK_INSTANCE_LAYERS
-}
-enable=VK_VALIDATION_FEATURE_ENABLE
-layer ${enable}_BEST_PRACTICES_EXT # which dislikes small buffers: so its words arrive, those about plates too
-"$palpate" touch sample:sheet --points 1500 --cells 16 --solver lavapipe >/dev/null || fail 'no touch under the validation layer'
-grep -q 'BestPractices-vkAllocateMemory' layer.txt || fail 'the validation layer does not see the plates'
+layer_arrives "$palpate"
 validate= solver=lavapipe
-for checks in ${enable}_SYNCHRONIZATION_VALIDATION_EXT ${enable}_GPU_ASSISTED_EXT,${enable}_GPU_ASSISTED_RESERVE_BINDING_SLOT_EXT; do
+for checks in $checks_synchronization $checks_accesses; do
     layer $checks
     start sample:skin --points 1500 --cells 24
     sleep 2
@@ -194,7 +186,7 @@ for checks in ${enable}_SYNCHRONIZATION_VALIDATION_EXT ${enable}_GPU_ASSISTED_EX
     "$client" "$window" close || fail 'the window of plates by Vulkan cannot be asked to close'
     ended 'closing the window of plates by Vulkan'
     [ -s err ] && { fail 'plates by Vulkan were complained of:'; cat err; }
-    { [ -e layer.txt ] && [ ! -s layer.txt ]; } || { fail "the validation layer, $checks:"; head -c 4000 layer.txt; }
+    layer_is_silent "$checks"
     "$palpate" export session-000$number --csv vulkan.csv >/dev/null || fail 'the recording of plates by Vulkan cannot be read'
     awk -F, 'NR == 1 { for (n = 1; n <= NF; ++n) if ($n == "compliance") column = n } NR > 1 && column && $column > 0 { felt = 1 } END { exit !felt }' vulkan.csv ||
         { fail "no plate by Vulkan was felt, $checks"; head -2 vulkan.csv; }
