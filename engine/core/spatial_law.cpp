@@ -361,7 +361,6 @@ SpatialLaw parseSpatialLaw(std::string_view text, const glm::dvec3& low, const g
 
 std::string lawWithFileIn(const std::string& text, const std::filesystem::path& folder)
 {
-    if (text.find("grid") == std::string::npos) return text;
     try {
         const std::string json = asJson(text);
         if (excessOf(json)) return text; // as below

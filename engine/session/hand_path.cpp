@@ -80,7 +80,6 @@ private:
 
 constexpr std::string_view kBetween = ",; \t\r"; // separators of numbers
 
-/// The first four words of a line, empty where there are fewer, and their number.
 /// Takes the next word of a line; empty behind the last.
 std::string_view takeWord(std::string_view& line)
 {
@@ -90,6 +89,7 @@ std::string_view takeWord(std::string_view& line)
     return word;
 }
 
+/// The first four words of a line, empty where there are fewer, and their number.
 struct Words {
     std::array<std::string_view, 4> first{};
     std::size_t                     count = 0;

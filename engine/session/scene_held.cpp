@@ -45,7 +45,6 @@ SceneHeld::Region regionOf(const JsonObject& object)
         return box;
     }
     const bool isBall = object.has("ball");
-    if (isBall) object.allowOnly({"ball", "radius"});
     return {false, isBall ? std::vector{object.point("ball")} : placesOf(object, "points"),
             object.quantity("radius", kRadius)};
 }

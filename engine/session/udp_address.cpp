@@ -44,16 +44,16 @@ UdpAddress parseUdpAddress(const std::string& text, const std::string& option, c
     rest.remove_prefix(kScheme.size());
     if (const std::size_t colon = rest.rfind(':'); colon != std::string_view::npos) {
         std::string_view host = rest.substr(0, colon);
-        if (host.size() > 2 && host.front() == '[' && host.back() == ']')
+        if (host.starts_with('[') && host.ends_with(']'))
             host = host.substr(1, host.size() - 2);
         else if (host.find(':') != std::string_view::npos)
             refuse(); // 1::2:80 may mean two things
+        if (host.find_first_of("[]") != std::string_view::npos) refuse();
         address.host = host;
         rest.remove_prefix(colon + 1);
     }
-    const auto [end, failure] = std::from_chars(rest.data(), rest.data() + rest.size(), address.port);
-    if (failure != std::errc() || end != rest.data() + rest.size() || rest.empty() || address.host.empty()) refuse();
-    if (address.port == 0) refuse();
+    const char* const end = std::from_chars(rest.data(), rest.data() + rest.size(), address.port).ptr;
+    if (end != rest.data() + rest.size() || address.port == 0 || address.host.empty()) refuse();
     return address;
 }
 

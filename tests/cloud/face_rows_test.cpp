@@ -38,21 +38,22 @@ TEST(FaceRows, PolygonsBecomeFansAboutTheirFirstCorner)
     EXPECT_EQ(loaded.report.degenerateFaces, 0u);
 }
 
-/// Area of the triangles of a flat file, and of those that face down [m^2].
-std::pair<double, double> areas(const LoadedCloud& loaded)
+/// Area of the triangles of a flat file, and of those that face against an axis [m^2].
+std::pair<double, double> areas(const LoadedCloud& loaded, int axis)
 {
     double all = 0, down = 0;
     for (const Triangle& t : loaded.faces) {
         const glm::dvec3 a = loaded.cloud.positions()[t[0]];
-        const double     z = glm::cross(loaded.cloud.positions()[t[1]] - a, loaded.cloud.positions()[t[2]] - a).z / 2;
-        all += std::abs(z);
-        down += std::max(0.0, -z);
+        const double     along =
+            glm::cross(loaded.cloud.positions()[t[1]] - a, loaded.cloud.positions()[t[2]] - a)[axis] / 2;
+        all += std::abs(along);
+        down += std::max(0.0, -along);
     }
     return {all, down};
 }
 
-/// Each polygon from each of its corners on: a notched square, a spiral, a star and a comb, and one that is drawn on the
-/// same line twice.
+/// Each polygon across each axis and from each corner on: a notched square, a spiral, a star and a comb, one that is
+/// drawn on the same line twice, and a frame, whose hole is reached by a cut that is passed in both directions.
 TEST(FaceRows, ConcavePolygonsBecomeTrianglesWithinThem)
 {
     using Places = std::vector<glm::dvec2>;
@@ -63,24 +64,29 @@ TEST(FaceRows, ConcavePolygonsBecomeTrianglesWithinThem)
     for (Places places :
          {Places{{0, 0}, {4, 0}, {4, 4}, {2, 1}, {0, 4}},
           Places{{0, 0}, {5, 0}, {5, 5}, {1, 5}, {1, 2}, {3, 2}, {3, 3}, {2, 3}, {2, 4}, {4, 4}, {4, 1}, {0, 1}}, star,
-          comb, Places{{0, 0}, {2, 0}, {4, 0}, {4, 4}, {3, 4}, {3, 1}, {1, 1}, {1, 4}, {0, 4}}}) {
+          comb, Places{{0, 0}, {2, 0}, {4, 0}, {4, 4}, {3, 4}, {3, 1}, {1, 1}, {1, 4}, {0, 4}},
+          Places{{0, 0}, {6, 0}, {6, 6}, {0, 6}, {0, 0}, {2, 2}, {2, 4}, {4, 4}, {4, 2}, {2, 2}}}) {
         double area = 0;
         for (std::size_t k = 0; k < places.size(); ++k) {
             const glm::dvec2 a = places[k], b = places[(k + 1) % places.size()];
             area += 0.5 * (a.x * b.y - a.y * b.x);
         }
-        for (std::size_t turn = 0; turn < places.size(); ++turn) {
+        for (std::size_t turn = 0; turn < 3 * places.size(); ++turn) {
+            const int axis = int(turn / places.size());
             std::rotate(places.begin(), places.begin() + 1, places.end());
             std::string text, face = std::to_string(places.size());
             for (std::size_t k = 0; k < places.size(); ++k) {
-                text += std::to_string(places[k].x) + " " + std::to_string(places[k].y) + " 0\n";
+                glm::dvec3 corner(0);
+                corner[(axis + 1) % 3] = places[k].x;
+                corner[(axis + 2) % 3] = places[k].y;
+                for (int n = 0; n < 3; ++n) text += std::to_string(corner[n]) + (n < 2 ? " " : "\n");
                 face += " " + std::to_string(k);
             }
             const LoadedCloud loaded = ply("ply\nformat ascii 1.0\nelement vertex " + std::to_string(places.size()) +
                                            "\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n"
                                            "property list uchar int vertex_indices\nend_header\n" +
                                            text + face + "\n");
-            const auto [all, down]   = areas(loaded);
+            const auto [all, down]   = areas(loaded, axis);
             EXPECT_EQ(loaded.faces.size(), places.size() - 2);
             EXPECT_NEAR(all, area, 1e-5 * area) << "corners are written with six digits";
             EXPECT_EQ(down, 0);

@@ -110,6 +110,38 @@ TEST(VtkXmlFile, NumbersThatDoNotFitAreRefusedWithTheirPlace)
     EXPECT_TRUE(contains(vtkRefusal(polyData(piece(kPoints, "1 2 3", "0 1 1.5"))),
                          {"\"connectivity\"", "a whole number", "found 1.5"}));
     EXPECT_TRUE(contains(vtkRefusal(polyData("")), {"the cloud is empty"}));
+    for (const char* components : {"0", "65537"})
+        EXPECT_TRUE(contains(vtkRefusal(replaced(polyData(piece(kPoints, "1 2 3", "0 1 2")), "Name=\"E\"",
+                                                 "Name=\"E\" NumberOfComponents=\"" + std::string(components) + "\"")),
+                             {"line 5", "expected 1 to 65536 components, found", components}));
+}
+
+TEST(VtkXmlFile, StripsBecomeTrianglesThatFaceTheSameWay)
+{
+    std::string bytes = polyData(piece("0 0 0 1 0 0 0 1 0 1 1 0", "1 2 3 4", "0 1 2 3"));
+    for (const auto& [from, to] : {std::pair{"NumberOfPoints=\"3\"", "NumberOfPoints=\"4\""},
+                                   {"NumberOfPolys", "NumberOfStrips"},
+                                   {"<Polys>", "<Strips>"},
+                                   {"</Polys>", "</Strips>"},
+                                   {"\"ascii\">3<", "\"ascii\">4<"}})
+        bytes = replaced(bytes, from, to);
+
+    EXPECT_EQ(vtk(bytes).faces, (Triangles{{0, 1, 2}, {1, 3, 2}}));
+}
+
+TEST(VtkXmlFile, WhatIsCountedMustBeThereAndHaveAType)
+{
+    const std::string good = polyData(piece(kPoints, "1 2 3", "0 1 2"));
+    for (const char* type : {"", "Float16"})
+        EXPECT_TRUE(contains(vtkRefusal(replaced(good, "Float32", type)),
+                             {"line 5", "expected a type such as Float32", "found \"" + std::string(type) + "\""}));
+    for (const char* none : {"<Points/><Other>", "<Other>"})
+        EXPECT_TRUE(contains(vtkRefusal(replaced(replaced(good, "<Points>", none), "</Points>", "</Other>")),
+                             {"line 5", "expected Points with a DataArray, found", "none"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(replaced(good, "<Polys>", "<Lines>"), "</Polys>", "</Lines>")),
+                         {"line 5", "expected an element Polys, found", "none"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(good, "\"offsets\"", "\"ends\"")),
+                         {"line 6", "expected a DataArray offsets, found", "none"}));
 }
 
 TEST(VtkXmlFile, ArraysWithoutTextAreRefusedWithTheirLine)
@@ -209,11 +241,20 @@ TEST(VtkXmlFile, DamagedAndDishonestArraysAreRefused)
     EXPECT_TRUE(contains(vtkRefusal(replaced(base64, "_AgAA", "_A*AA")), {"byte", "base 64", "\"*\""}));
     EXPECT_TRUE(
         contains(vtkRefusal(replaced(base64, "offset=\"200\"", "offset=\"999\"")), {"line 13", "an offset of up to"}));
+    const std::size_t rest = base64.size() - base64.find("_AgAA") - 1;
+    EXPECT_TRUE(contains(vtkRefusal(replaced(base64, "offset=\"200\"", "offset=\"" + std::to_string(rest + 1) + "\"")),
+                         {"an offset of up to " + std::to_string(rest)}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(base64, "offset=\"200\"", "offset=\"" + std::to_string(rest) + "\"")),
+                         {"found at most 0"}));
     EXPECT_TRUE(contains(vtkRefusal(replaced(base64, "vtkZLibDataCompressor", "vtkLZ4DataCompressor")),
                          {"line 2", "vtkLZ4DataCompressor"}));
     EXPECT_TRUE(
         contains(vtkRefusal(replaced(base64, "encoding=\"base64\"", "encoding=\"hex\"")), {"raw or base64", "hex"}));
-    // A header of one block of 2^30 bytes, and one of 2^32 - 1 blocks.
+    // Headers of one block of 32768 bytes of which the last has 32769, of 2^30 + 1, of 2^30, and of 2^32 - 1 blocks.
+    EXPECT_TRUE(contains(vtkRefusal(replaced(meshio, "AQAAAACAAAA8AAAA", "AQAAAACAAAABgAAA")),
+                         {"up to 1 GiB, found 1 of 32768 bytes, the last of 32769"}));
+    EXPECT_TRUE(contains(vtkRefusal(replaced(meshio, "AQAAAACAAAA8AAAA", "AQAAAAEAAEA8AAAA")),
+                         {"up to 1 GiB, found 1 of 1073741825 bytes, the last of 60"}));
     EXPECT_TRUE(contains(vtkRefusal(replaced(meshio, "AQAAAACAAAA8AAAA", "AQAAAAAAAEAAAABA")),
                          {"claims to hold 1073741824 bytes", "100 times"}));
     EXPECT_TRUE(

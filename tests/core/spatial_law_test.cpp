@@ -187,6 +187,16 @@ TEST(SpatialLaw, AnyOtherTextIsRefusedAndNothingElseHappens)
     for (const std::string& text : texts) EXPECT_NE(refusal(text), "") << text;
 }
 
+TEST(SpatialLaw, AWordOfTheShortFormHasPlainCharactersOnly)
+{
+    for (const std::string word : {"", "fr om", "fr\"om", "fr\\om", "fr\x7fom", "fr\xc3\xb6m"}) {
+        const std::string complaint =
+            ": expected NAME:key=value,key=value such as linear:from=1,to=10,axis=x, found \"";
+        for (const std::string& text : {"linear:" + word + "=1,to=2", word + ":from=1,to=2"})
+            EXPECT_TRUE(holds(refusal(text), {complaint + word.substr(0, 2)})) << refusal(text);
+    }
+}
+
 TEST(SpatialLaw, AKeyGivenTwiceIsRefused)
 {
     EXPECT_TRUE(holds(refusal(R"({"law":"constant","value":1,"value":2})"), {"value", "twice"}));

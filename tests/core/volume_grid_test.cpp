@@ -190,6 +190,8 @@ TEST(VolumeGrid, BeyondItsOutermostNodesIsOutside)
     EXPECT_EQ(grid.at({0, 0, 1.002e-3}).at, VolumeGrid::At::outside);
     EXPECT_EQ(grid.at({0, std::nan(""), 0}).at, VolumeGrid::At::outside);
     EXPECT_EQ(grid.extent(), "x 0 to 0.001, y 0 to 0.001, z 0 to 0.001 m");
+    EXPECT_EQ(nifti(plain(std::vector<std::int16_t>(24, 7), {2, 3, 4})).extent(),
+              "x 0 to 0.001, y 0 to 0.002, z 0 to 0.003 m");
 }
 
 TEST(VolumeGrid, ZeroIsUnknownAndDoesNotCountWhereItHasNoWeight)
@@ -281,6 +283,31 @@ TEST(VolumeGrid, ValuesThatAreNoStiffnessAreRefusedByTheirIndex)
     EXPECT_TRUE(holds(refusal(nan), {"test: the value at [1, 1, 0] is NaN"}));
     EXPECT_TRUE(holds(refusal(changed(nan, 352 + 12, INFINITY)), {"[1, 1, 0] is infinite"}));
     EXPECT_TRUE(holds(refusal(changed(nan, 352 + 12, 1e35F)), {"[1, 1, 0] is beyond"}));
+}
+
+template <class Number>
+void demandRead(int code, double last)
+{
+    std::string bytes = changed(kPlain, 70, std::int16_t(code)).substr(0, 352);
+    for (const double value : {1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, last}) {
+        const auto stored = Number(value);
+        bytes.append(reinterpret_cast<const char*>(&stored), sizeof stored);
+    }
+    const VolumeGrid grid = nifti(bytes);
+    EXPECT_EQ(grid.node(1, 0, 0), 2) << code;
+    EXPECT_EQ(grid.node(1, 1, 1), last) << code;
+}
+
+TEST(VolumeGrid, EveryTypeOfNumbersIsReadUpToItsLargest)
+{
+    demandRead<std::uint8_t>(2, 255);
+    demandRead<std::int16_t>(4, 32767);
+    demandRead<std::int32_t>(8, 2e9);
+    demandRead<float>(16, 0.5);
+    demandRead<double>(64, 0.5);
+    demandRead<std::int8_t>(256, 127);
+    demandRead<std::uint16_t>(512, 65535);
+    demandRead<std::uint32_t>(768, 4e9);
 }
 
 TEST(VolumeGrid, ARefusalNamesTheByteAndWhatWasExpected)
@@ -452,6 +479,22 @@ TEST(GridLaw, GivesTheVolumesValueAndNamesThePlaceWhereThereIsNone)
         {"unknown law \"grid\""}));
 }
 
+TEST(GridLaw, AnArrayIsPlacedByTheLaw)
+{
+    const TemporaryFolder folder;
+    const std::string     file =
+        folder.write("e.npy", npy("False", "(2, 2, 2)", {111, 112, 121, 122, 211, 212, 221, 222})).string();
+    const auto law = [&](const std::string& place) {
+        return parseSpatialLaw("grid:file=" + file + place, {0, 0, 0}, {1, 1, 1}, SpatialLaw::Space::volume);
+    };
+
+    EXPECT_NEAR(law(",spacing=0.1;0.2;0.3")({0.1, 0, 0.3}), 212, 1e-9);
+    EXPECT_NEAR(law(",origin=1;2;3,spacing=0.1;0.2;0.3")({1.1, 2.2, 3}), 221, 1e-9);
+    EXPECT_EQ(law(",spacing=0.5").volume->extent(), "x 0 to 0.5, y 0 to 0.5, z 0 to 0.5 m");
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(law(",spacing=0.1;0;0.3")); }),
+                      {"\"spacing\"", "metres above zero", "[0.1,0,0.3]"}));
+}
+
 TEST(GridLaw, ThroughTheThicknessItTakesTheSheetBelow)
 {
     const TemporaryFolder folder;
@@ -491,6 +534,7 @@ TEST(GridLaw, AFileOfASceneLiesInTheScenesFolder)
 {
     EXPECT_EQ(lawWithFileIn("grid:file=e.nii,outside=2", "/a/b"), R"({"file":"/a/b/e.nii","law":"grid","outside":2})");
     EXPECT_EQ(lawWithFileIn(R"({"law": "grid", "file": "/c/e.nii"})", "/a"), R"({"file":"/c/e.nii","law":"grid"})");
+    EXPECT_EQ(lawWithFileIn(R"({"law": "gr\u0069d", "file": "e.nii"})", "/a"), R"({"file":"/a/e.nii","law":"grid"})");
     for (const char* other :
          {"constant:value=1", "", "grid", "grid:", R"({"law": "grid)", R"({"law": "grid", "file": 3})"})
         EXPECT_EQ(lawWithFileIn(other, "/a"), other);

@@ -106,10 +106,14 @@ TEST_F(StoredFalcon, ADamagedFileIsRefusedInOneSentence)
         std::string text = good;
         return text.replace(text.find(from), from.size(), to);
     };
+    put(with("2026-11-22", "1999-09-09"));
+    EXPECT_EQ(readFalconConstants("F1")->date, "1999-09-09");
+    put(good + std::string(4096 - good.size(), ' '));
+    EXPECT_TRUE(readFalconConstants("F1"));
     for (const std::string& bad : {std::string(),
                                    std::string("{"),
                                    std::string("[]"),
-                                   std::string(5000, ' '),
+                                   good + std::string(4097 - good.size(), ' '),
                                    std::string("\0\xFF\xFE", 3),
                                    with("4200", "42000"),
                                    with("4200", "1e999"),
@@ -125,6 +129,9 @@ TEST_F(StoredFalcon, ADamagedFileIsRefusedInOneSentence)
                                    with("calibration 1", "calibration 2"),
                                    with("2026-11-22", "22.11.2026"),
                                    with("2026-11-22", "2026-11-22\\n"),
+                                   with("2026-11-22", "2026-11-2:"),
+                                   with("2026-11-22", "2026-11-2/"),
+                                   with("2026-11-22", "2026/11/22"),
                                    with("\"arm_kg\"", "\"arm\""),
                                    with("\"arm_kg\"", "\"counts_per_torque\""),
                                    with("{", "{\"more\": 1, ")}) {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <limits>
 #include <random>
+#include <set>
 #include <sstream>
 #include <string>
 
@@ -128,10 +129,15 @@ TEST(SpaceMouseReport, GarbageNeverLeavesTheLimits)
 
 TEST(SpaceMouseReport, KnowsCapsAndNothingElseOfTheirMaker)
 {
+    const std::set<int> withTwoButtons = {0xc626, 0xc628, 0xc62e, 0xc62f, 0xc635, 0xc63a};
+    const auto          buttonsOf      = [](std::uint16_t vendor, int product) {
+        const SpaceMouseModel* const model = spaceMouseModel({.vendor = vendor, .product = std::uint16_t(product)});
+        return model ? model->buttons : 0;
+    };
     for (int product : {0xc603, 0xc605, 0xc606, 0xc621, 0xc623, 0xc625, 0xc626, 0xc627, 0xc628, 0xc629, 0xc62b})
-        EXPECT_TRUE(spaceMouseModel({.vendor = 0x046d, .product = std::uint16_t(product)})) << product;
+        EXPECT_EQ(buttonsOf(0x046d, product), withTwoButtons.contains(product) ? 2U : 32U) << product;
     for (int product : {0xc62e, 0xc62f, 0xc631, 0xc632, 0xc633, 0xc635, 0xc636, 0xc638, 0xc63a, 0xc652})
-        EXPECT_TRUE(spaceMouseModel({.vendor = 0x256f, .product = std::uint16_t(product)})) << product;
+        EXPECT_EQ(buttonsOf(0x256f, product), withTwoButtons.contains(product) ? 2U : 32U) << product;
     // CadMice and keyboards
     for (int product : {0xc650, 0xc651, 0xc654, 0xc655, 0xc656, 0xc657, 0xc658, 0xc664, 0xc665, 0xc668, 0xc62c, 0xc641})
         EXPECT_FALSE(spaceMouseModel({.vendor = 0x256f, .product = std::uint16_t(product)})) << product;

@@ -217,6 +217,12 @@ TEST_F(ProblemFile, ValuesOutOfRangeAreRefusedWithWhatWasFound)
         EXPECT_TRUE(holds(refusal(with("[8, 12]", cells)), {"cells", "4 to 4096"})) << cells;
     EXPECT_TRUE(holds(refusal(with("0.3", "0.6")), {"poisson", "0.5", "0.6"}));
     EXPECT_TRUE(holds(refusal(with("0.3", "\"soft\"")), {"poisson", "number", "soft"}));
+    for (const std::string other : {"true", "null", "[0.3]", "{}"})
+        EXPECT_TRUE(refusal(with("0.3", other)).ends_with("key \"poisson\": expected a number, found " + other))
+            << other;
+    const std::string whole = '"' + std::string(198, 's') + '"', longer = '"' + std::string(199, 's') + '"';
+    EXPECT_TRUE(refusal(with("0.3", whole)).ends_with("found " + whole));
+    EXPECT_TRUE(refusal(with("0.3", longer)).ends_with("found " + longer.substr(0, 200) + "..."));
     EXPECT_TRUE(holds(refusal(with("\"foundation\": 5", "\"foundation\": -5")), {"foundation", "-5"}));
     EXPECT_TRUE(holds(refusal(with("\"foundation\": 5", R"("foundation": {"law": "constant", "value": -5})")),
                       {"foundation", "-5"}));
@@ -322,7 +328,10 @@ TEST_F(ProblemFile, BrokenJsonIsReportedWithItsPlace)
     EXPECT_TRUE(holds(refusal("{\n\"size\": [1, 1],\n\"cells\" 8}"), {"plate.json", "line 3", "JSON"}));
     EXPECT_TRUE(holds(refusal(""), {"plate.json", "JSON"}));
     EXPECT_TRUE(holds(refusal("[1]"), {"plate.json", "object", "array"}));
-    EXPECT_TRUE(holds(refusal(with("\"poisson\": 0.3", "\"poisson\": 0.3, \"poisson\": 0.4")), {"poisson", "twice"}));
+    for (const std::string before : {"true", "null", "8", "-8", "0.5", "\"a\"", "[]", "{}"})
+        EXPECT_TRUE(holds(refusal(R"({"size": )" + before + R"(, "poisson": 0.3, "poisson": 0.4})"),
+                          {"the key \"poisson\" is given twice"}))
+            << before;
     EXPECT_TRUE(holds(refusal(std::string(100000, '[')), {"plate.json", "JSON"})) << "deep nesting";
     EXPECT_TRUE(holds(refusal("\x93NUMPY\x01"), {"plate.json", "JSON"}));
     EXPECT_TRUE(holds(refusal(std::string((16u << 20) + 1, ' ')), {"plate.json", "longer than"}));

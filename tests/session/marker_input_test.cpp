@@ -81,6 +81,23 @@ TEST(MarkerInput, ItsPortIsThisMachinesAloneUnlessAHostIsStated)
                       {"--markers", "cannot be listened at", "in use"}));
 }
 
+TEST(MarkerInput, AnAddressIsAPortOrAHostAndAPortAndNothingElse)
+{
+    const auto refusal = [](const std::string& text, const std::string& hostless) {
+        return refusalOf([&] { static_cast<void>(parseUdpAddress(text, "--markers", hostless)); });
+    };
+    for (const char* wrong :
+         {"tcp:9870", "9870", "udp:", "udp:host:", "udp:0", "udp:host:65536", "udp:host:9870x", "udp:host:-1",
+          "udp: 9870", "udp::9870", "udp:[]:9870", "udp:[[a]]:9870", "udp:[a:9870", "udp:a:b:1"})
+        EXPECT_TRUE(holds(refusal(wrong, "127.0.0.1"),
+                          {"--markers: expected udp:PORT or udp:HOST:PORT, such as", std::string("\"") + wrong + "\""}))
+            << wrong;
+    EXPECT_TRUE(holds(refusal("udp:9870", ""), {"--markers: expected udp:HOST:PORT", "found \"udp:9870\""}));
+    for (const char* right : {"udp:host:1", "udp:127.0.0.1:65535", "udp:[::1]:80"})
+        EXPECT_EQ(parseUdpAddress(right, "--markers").text(), right);
+    EXPECT_EQ(parseUdpAddress("udp:[fe80::1]:9870", "--markers").host, "fe80::1");
+}
+
 /// 127.0.0.2 stands for an address of this machine on a network: what is bound to 127.0.0.1 does not hear it.
 TEST(MarkerInput, WhatComesByAnotherAddressIsHeardOnlyWhereTheUserNamesOne)
 {

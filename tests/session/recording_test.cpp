@@ -173,6 +173,25 @@ TEST(Recording, TheClocksOfTimeZeroAreInItWhileItRuns)
     EXPECT_FALSE(readSession(folder / "run").finished);
 }
 
+TEST(Recording, TimeZeroIsTheFirstTickWhereNobodyBegan)
+{
+    const TemporaryFolder folder;
+    for (const bool waits : {false, true}) {
+        Recording  recording(folder / std::to_string(waits), someInfo());
+        const auto before = std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
+        if (waits)
+            recording.pushWaiting(recordNumber(0));
+        else
+            recording.push(recordNumber(0));
+        const auto after = std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
+        EXPECT_EQ(recording.finish().ticks, 1u);
+        const auto clocks = readSession(folder / std::to_string(waits)).clocks;
+        ASSERT_TRUE(clocks) << waits;
+        EXPECT_GE(clocks->monotonic, before);
+        EXPECT_LE(clocks->monotonic, after);
+    }
+}
+
 TEST(Recording, MarkersAreLinesOfJsonThatNothingCanBreak)
 {
     const TemporaryFolder folder;

@@ -353,6 +353,8 @@ TEST(Below, WhatIsWrongIsSaidInOneSentence)
     refused(R"({"depth": 0.01, "modulus": 2e4, "nodules": [7]})", {"nodule 1", "object"});
     refused(R"({"depth": 0.01, "modulus": 2e4, "volume": "linear:from=1,to=2"})", {"volume", "grid"});
     refused(nodule(R"("at": [0,0,0], "radius": 5e-3, "modulus": 1e6)"), {"nodule 1", "depth", "missing"});
+    refused(nodule(R"("at": [0,0,0], "depth": 8e-3, "radius": 5e-3, "modulus": 1e6, "modulos": 1)"),
+            {"nodule 1", "unknown key \"modulos\""});
     refused(nodule(R"("at": [0,0,0], "depth": 5e-3, "radius": 5e-3, "modulus": 1e6)"),
             {"nodule 1", "underside at 2.00 mm", "from 0 m to 10.0 mm"});
     refused(nodule(R"("at": [0,0,0], "depth": 14e-3, "radius": 5e-3, "modulus": 1e6)"),
@@ -362,6 +364,27 @@ TEST(Below, WhatIsWrongIsSaidInOneSentence)
     Scene none            = sceneOf(kSolids[0], belowOf(kSolids[0]));
     none.patch.foundation = 0;
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadObject(none)); }), {"below", "foundation above 0"}));
+}
+
+TEST(Below, BoundsAreTakenAndWhatLiesBeyondThemIsRefused)
+{
+    const auto read = [](const std::string& depth, const std::string& modulus) {
+        return refusalOf([&] {
+            static_cast<void>(parseBelow(R"({"depth": )" + depth + R"(, "modulus": )" + modulus + "}", "a test"));
+        });
+    };
+    EXPECT_EQ(read("1e-5", "1"), "");
+    EXPECT_EQ(read("1", "1e12"), "");
+    for (const char* depth : {"0.99e-5", "1.01"}) EXPECT_TRUE(holds(read(depth, "1"), {"\"depth\"", "1e-5 to 1 m"}));
+    for (const char* modulus : {"0.99", "1.01e12"})
+        EXPECT_TRUE(holds(read("1", modulus), {"\"modulus\"", "1 to 1e12 Pa"}));
+}
+
+TEST(Below, ALawThatHasACommentIsWrittenWithoutIt)
+{
+    const SceneBelow below =
+        parseBelow(R"({"foundation": "{\"law\": \"constant\", /* even */ \"value\": 2e6}"})", "a test");
+    EXPECT_EQ(belowJson(below), R"({"foundation":{"law":"constant","value":2000000.0}})");
 }
 
 /// A sheet whose foundation is 2 MPa/m by itself, by a law, or point by point.

@@ -1,5 +1,8 @@
 #include "engine/session/scene_held.h"
 
+#include <algorithm>
+
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
@@ -82,6 +85,29 @@ TEST(Held, OfManyPlacesEachHoldsWhatIsNear)
     EXPECT_EQ(held(many + ", [1e300, 0, 0], [-1e9, 1e9, 3]"), held(few)) << "places far off hold nothing";
 }
 
+TEST(Held, OfManyPlacesThoseBesideThePointsHoldTheOutermostOnes)
+{
+    std::vector<glm::dvec3> positions, places{{-31.2e-3, -15.5e-3, 0.5e-3}, {30.2e-3, 14.8e-3, -0.4e-3}};
+    for (int i = -30; i < 30; ++i)
+        for (int j = -15; j < 15; ++j) positions.emplace_back(1e-3 * i, 1e-3 * j, 0);
+    for (int n = 0; n < 38; ++n) places.emplace_back(-20e-3 + 1.3e-3 * n, 0.4e-3 * (n - 19), 1e-3 * (n % 3 - 1));
+    std::string list;
+    for (const glm::dvec3& p : places)
+        list += (list.empty() ? "[" : ", [") + std::to_string(p.x) + ", " + std::to_string(p.y) + ", " +
+                std::to_string(p.z) + "]";
+
+    const SceneHeld held   = parseHeld(R"({"radius": "2.05 mm", "points": [)" + list + "]}", "a test");
+    const auto      shares = heldShares(positions, held, {}, "a test");
+
+    ASSERT_EQ(shares.size(), positions.size());
+    for (std::size_t n = 0; n < positions.size(); ++n) {
+        const auto holds = [&](const glm::dvec3& place) { return glm::distance(place, positions[n]) < 2.05e-3; };
+        EXPECT_EQ(shares[n], std::ranges::any_of(places, holds) ? 1 : 0) << "point " << n;
+    }
+    EXPECT_EQ(shares.front(), 1) << "its place is beyond it";
+    EXPECT_EQ(shares.back(), 1);
+}
+
 TEST(Held, MistakesAreNamed)
 {
     const TemporaryFolder folder;
@@ -91,6 +117,7 @@ TEST(Held, MistakesAreNamed)
     };
     refused("", {"window", "held", "foundation", "neither"});
     refused(R"({"box": [[0, 0, 0]]})", {"held", "box", "two opposite corners"});
+    refused(R"({"box": [[0, 0, 0], [1, 1, 1]], "radius": 1})", {"held", "unknown key \"radius\"", "known keys: box"});
     refused(R"({"ball": [0, 0, 0]})", {"held", "radius", "missing"});
     refused(R"({"ball": [0, 0, 0], "radius": -1})", {"held", "radius", "1e-6 to 100 m"});
     refused(R"({"points": [], "radius": 1})", {"held", "points", "1 to 10000 places"});
@@ -100,6 +127,10 @@ TEST(Held, MistakesAreNamed)
     std::string places = "[0, 0, 0]";
     for (int n = 1; n < 5001; ++n) places += ", [0, 0, 0]";
     const std::string half = R"({"radius": 1, "points": [)" + places + "]}";
+    const std::string most = half.substr(0, half.size() - std::string(", [0, 0, 0]]}").size()) + "]}";
+    EXPECT_EQ(parseHeld("[" + most + ", " + most + R"(, {"box": [[0, 0, 0], [1, 1, 1]]}])", "a test").regions.size(),
+              3U)
+        << "a box is not among the 10000 places";
     refused("[" + half + ", " + half + "]", {"held", "at most 10000 places in all regions", "found 10002"});
     refused(R"("firmly")", {"held"});
     refused(R"({"ball": [9, 9, 9], "radius": 0.1})", {"held", "at least one point", "1800", "metres"});

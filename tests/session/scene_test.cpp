@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/cloud/samples.h"
+#include "engine/core/quantity.h"
 #include "engine/session/hand_path.h"
 #include "tests/support/temporary_folder.h"
 
@@ -339,7 +340,7 @@ TEST(Scene, FilesThatAreNoScenesAreRefused)
     EXPECT_TRUE(says(text(R"({"cloud": "sample:skin", "thickness": 1e999})"), {"s.json"}));
     EXPECT_TRUE(says(text(R"({"cloud": "sample:skin)"), {"s.json", "not valid JSON"}));
     EXPECT_TRUE(says(text(R"({"cloud": "sample:nose"})"), {"key \"cloud\"", "nose", "ear-lobe"}));
-    EXPECT_TRUE(says(text(R"({"cloud": ""})"), {"key \"cloud\"", "path"}));
+    EXPECT_TRUE(says(text(R"({"cloud": ""})"), {"key \"cloud\"", "path", "sample:NAME, found \"\""}));
     EXPECT_TRUE(says(text(R"({"cloud": 5})"), {"key \"cloud\"", "5"}));
     EXPECT_TRUE(says(text(R"({"cloud": "sample:skin", /* a comment */ "cells": 32, "cells": 64})"),
                      {"s.json", "the key \"cells\" is given twice in one object"}));
@@ -381,6 +382,10 @@ TEST(Scene, ACloudFileLiesBesideItsSceneAndIsScaledByItsUnit)
     EXPECT_NEAR(loaded.cloud.stiffness()[0], 1e5, 1e-6);
     EXPECT_NEAR(loaded.cloud.stiffness()[9], 1e6, 1e-6);
     EXPECT_EQ(sceneJson(parseScene(sceneJson(scene), "again", "/elsewhere")), sceneJson(scene)) << "absolute path";
+    const std::string beside  = std::filesystem::relative(folder / "plane.xyz").string();
+    const Scene       flagged = parsed("{}", overrides({{"cloud", beside}}));
+    EXPECT_EQ(flagged.cloud, beside);
+    EXPECT_EQ(loadCloud(parseScene(sceneJson(flagged), "again", "/elsewhere")).cloud.size(), 100u);
     EXPECT_TRUE(says(refusalOf([&] {
                          static_cast<void>(readScene(file, overrides({{"length_unit", "parsec"}})));
                      }),
@@ -567,6 +572,120 @@ TEST(Scene, TwoScenesHaveTheSameCloudUnlessAKeyThatDecidesItDiffers)
     };
     EXPECT_FALSE(haveSameCloud(other("length_unit", "mm"), other("length_unit", "cm")));
     EXPECT_FALSE(haveSameCloud(other("uniform", "1kPa"), other("uniform", "2kPa")));
+}
+
+TEST(Scene, EachKeyThatHasBoundsSaysThem)
+{
+    const std::map<std::string_view, std::string_view> expected = {
+        {"points", "a whole number from 16 to 10000000"},
+        {"seed", "a whole number from 0 to 4294967295"},
+        {"scatter", "auto, on, off, or a distance from 1e-6 to 1 m, such as 0.5 mm"},
+        {"place", "a place X,Y,Z up to 1e9 m away, such as 10mm,0,35mm"},
+        {"thickness", "a length from 1e-6 to 1 m, such as 4 mm"},
+        {"poisson", "a number above -1 and below 0.5"},
+        {"foundation", "a number from 0 to 1e15 Pa/m, such as 1.74 MPa/m"},
+        {"stiffening", "a number from 0 to 1e5 1/m, such as 0.8 1/mm"},
+        {"window", "object, auto, or a length from 1e-6 to 100 m, such as 70 mm"},
+        {"cells", "an even number from 8 to 1024"},
+        {"footprint_radius", "a length from 1e-6 to 10 m, such as 4 mm"},
+        {"tolerance", "a number from 1e-7 to 0.1"},
+        {"table_size", "0, 1, 3, 5 or 7"},
+        {"deformation_rate", "a number from 1 to 1000 Hz"},
+        {"static_friction", "a number from 0 to 10"},
+        {"dynamic_friction", "a number from 0 to 10"},
+        {"max_force", "a force from 0.01 to 8 N, such as 4 N"},
+        {"stiffness_cap", "a number from 1 to 2000 N/m"},
+        {"start_height", "a length from 0 to 1 m, such as 10 mm"},
+        {"workspace_scale", "a number from 0.1 to 10"},
+        {"clutch_button", "a whole number from 0 to 16"},
+    };
+    for (const SceneKey& key : sceneKeys()) {
+        if (!key.bounds) continue;
+        ASSERT_TRUE(expected.contains(key.name)) << key.name;
+        EXPECT_EQ(key.expected(), expected.at(key.name));
+        if (key.form.empty()) continue; // the sentence is no copy of the bounds
+        const std::string least = plainNumber(std::abs(key.bounds->least)), most = plainNumber(key.bounds->most);
+        EXPECT_TRUE(holds(key.expected(), {least, most})) << key.name;
+    }
+}
+
+TEST(Scene, TheBoundsThemselvesAreTaken)
+{
+    const std::pair<const char*, const char*> taken[] = {{"max_force", "0.01"},
+                                                         {"max_force", "8"},
+                                                         {"thickness", "1 um"},
+                                                         {"thickness", "1 m"},
+                                                         {"cells", "8"},
+                                                         {"cells", "1024"},
+                                                         {"points", "16"},
+                                                         {"points", "10000000"},
+                                                         {"tolerance", "1e-7"},
+                                                         {"tolerance", "0.1"},
+                                                         {"deformation_rate", "1000"},
+                                                         {"stiffness_cap", "1"},
+                                                         {"seed", "0"},
+                                                         {"seed", "4294967295"},
+                                                         {"static_friction", "10"},
+                                                         {"clutch_button", "16"},
+                                                         {"foundation", "0"},
+                                                         {"foundation", "1e15"},
+                                                         {"start_height", "0"},
+                                                         {"start_height", "1 m"},
+                                                         {"stiffening", "1e5"},
+                                                         {"place", "1e9,-1e9,0"},
+                                                         {"window", "100 m"},
+                                                         {"poisson", "-0.999999"}};
+    for (const auto& [key, value] : taken) EXPECT_EQ(refusal("", overrides({{key, value}})), "");
+}
+
+TEST(Scene, ALongValueIsRefusedByItsBeginning)
+{
+    const std::string beginning(200, 'x');
+    EXPECT_TRUE(says(refusal(R"("map": ")" + beginning + R"(yz")"), {"found \"" + beginning + "...\""}));
+}
+
+TEST(Scene, NumbersAreWrittenWithoutNeedlessSignsAndZeros)
+{
+    const std::pair<double, const char*> numbers[] = {{0.1, "0.1"},   {100, "100"},       {123456, "123456"},
+                                                      {1e5, "1e5"},   {1e22, "1e22"},     {1e100, "1e100"},
+                                                      {1e-7, "1e-7"}, {-2e-12, "-2e-12"}, {1e-100, "1e-100"}};
+    for (const auto& [number, text] : numbers) EXPECT_EQ(plainNumber(number), text);
+}
+
+TEST(Scene, TextsAreWrittenAsTheyAre)
+{
+    EXPECT_EQ(quotedJson("Gr\xC3\xBC\xC3\x9F \"e\"\n"), "\"Gr\xC3\xBC\xC3\x9F \\\"e\\\"\\n\"");
+    EXPECT_EQ(quotedJson("a\xFF"), "\"a\xEF\xBF\xBD\"") << "what is no UTF-8 is marked as unknown";
+}
+
+TEST(Scene, SlidersShowTheStandardValuesAndOfferNothingThatASceneRefuses)
+{
+    const Scene skin    = parsed(R"({"cloud": "sample:skin"})");
+    int         sliders = 0;
+    for (const SceneKey& key : sceneKeys()) {
+        if (!key.control || key.control->most == key.control->least) continue;
+        const KeyControl& slider = *key.control;
+        const double      shown = key.number(skin) / slider.perUnit, inDigits = shown * std::pow(10, slider.decimals);
+        const bool        own = slider.unit[0] == '\0' || slider.unit == key.unit;
+        ++sliders;
+        EXPECT_EQ(slider.perUnit, own ? 1 : parseQuantity(std::string("1 ") + slider.unit, key.dimension, "a test"))
+            << key.name;
+        EXPECT_GE(slider.least * slider.perUnit, key.bounds->least) << key.name;
+        EXPECT_LE(slider.most * slider.perUnit, key.bounds->most) << key.name;
+        EXPECT_GE(shown, slider.least) << key.name;
+        EXPECT_LE(shown, slider.most) << key.name;
+        EXPECT_NEAR(inDigits, std::round(inDigits), 1e-9) << key.name << " is rounded";
+        EXPECT_NEAR(slider.step > 0 ? std::remainder(shown, slider.step) : 0, 0, 1e-9) << key.name;
+    }
+    EXPECT_EQ(sliders, 13);
+}
+
+TEST(Scene, KeysThatHadOtherNamesAreKnownByThem)
+{
+    EXPECT_EQ(keyNamedOnce("device"), "solver");
+    EXPECT_EQ(keyNamedOnce("hand_over"), "compliance_law");
+    EXPECT_EQ(keyNamedOnce("sampling"), "resampling");
+    for (const SceneKey& key : sceneKeys()) EXPECT_FALSE(keyNamedOnce(key.name)) << key.name;
 }
 
 TEST(Scene, NamesOfFlagsAndVariablesAreUnique)

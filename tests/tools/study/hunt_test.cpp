@@ -146,6 +146,9 @@ TEST(Hunt, ASeedPlacesTheSameNodulesElsewhereAndTheSameAgain)
         places.insert(nodules[0].centre.x);
     }
     EXPECT_EQ(places.size(), 4u);
+    EXPECT_EQ(hiddenIn(sceneWith(kTwo, R"(, "hunt_seed": 4294967295)"))->seed, 4294967295u);
+    const std::string said = refusalOf([] { static_cast<void>(sceneWith(kTwo, R"(, "hunt_seed": 4294967296)")); });
+    EXPECT_TRUE(holds(said, {"hunt_seed", "from 0 to 4294967295", "found \"4294967296\""})) << said;
 }
 
 TEST(Hunt, RandomNodulesKeepApartFromEachOtherFromBordersAndWithinTheGround)

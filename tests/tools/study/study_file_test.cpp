@@ -1,6 +1,8 @@
 // Tests of study.json: what is written is read, files of version 0.1.0 too, and every mistake is named.
 #include "engine/tools/study/study_file.h"
 
+#include <filesystem>
+
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -38,6 +40,15 @@ TEST(StudyFiles, APipeInItsPlaceIsNotWaitedFor)
     const TemporaryFolder folder;
     ASSERT_EQ(::mkfifo((folder / "study.json").c_str(), 0666), 0);
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readStudyFile(folder.path())); }), {"found a pipe"}));
+}
+
+TEST(StudyFiles, OfMoreThan16MegabytesIsRefused)
+{
+    const TemporaryFolder folder;
+    const auto            file = folder.write("study.json", R"({"format": 1, "participant": "p")");
+    std::filesystem::resize_file(file, (std::size_t(16) << 20) + 1);
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readStudyFile(folder.path())); }),
+                      {"study.json: longer than 16777216 bytes; expected a study's description"}));
 }
 
 TEST(StudyFiles, AMistakeIsNamed)

@@ -114,8 +114,7 @@ TEST(StudyOrder, PairsComeEquallyOftenInEitherOrderAndTheRightAnswerFollows)
             EXPECT_EQ(*trial.right, trial.first == 0 ? "second" : "first")
                 << "the second as listed is right, a is first";
         }
-        EXPECT_EQ(times.size(), 4u);
-        for (const auto& [pair, n] : times) EXPECT_EQ(n, 3);
+        EXPECT_EQ(times, (decltype(times){{{0, 1}, 3}, {{1, 0}, 3}, {{0, 2}, 3}, {{2, 0}, 3}}));
         all.insert(turned);
     }
     EXPECT_EQ(all.size(), 5u) << "each participant's shuffle is another";
@@ -146,7 +145,7 @@ TEST(StudyPlan, APresetAndValuesLieOverTheScene)
     const TemporaryFolder folder;
     static_cast<void>(folder.write("s.json", R"({"cloud": "sample:sheet", "foundation": 1e6, "max_force": 3})"));
     const StudyPlan study = parsePlan(
-        R"({"title": "t", "conditions": [{"name": "p", "scene": "s.json", "preset": "paper", "values":
+        R"({"title": "t", "seconds": 3600, "conditions": [{"name": "p", "scene": "s.json", "preset": "paper", "values":
             {"resampling": "log-mean", "from": [0, 0, 2], "stiffness": {"law": "constant", "value": 5e4}, "points": 5000}}],
             "tasks": [{"name": "n", "kind": "yes-no", "question": "?", "yes_for": ["p"]}]})",
         "plan.json", folder.path());
@@ -160,6 +159,7 @@ TEST(StudyPlan, APresetAndValuesLieOverTheScene)
     EXPECT_EQ(scene.points, 5000u);
     EXPECT_EQ(loadCloud(scene).cloud.stiffness()[7], 5e4);
     EXPECT_EQ(trialsOf(study, 1)[0].right, "yes");
+    EXPECT_EQ(study.seconds, 3600) << "the most";
 }
 
 TEST(StudyPlan, TheOnesInSamplesAreGoodAndRepeatThePapersProtocol)
@@ -171,6 +171,42 @@ TEST(StudyPlan, TheOnesInSamplesAreGoodAndRepeatThePapersProtocol)
     for (const Condition& condition : paper.conditions)
         EXPECT_TRUE(differencesFromPaper(condition.scene.patch).empty()) << condition.name;
     EXPECT_EQ(trialsOf(warts, 1).size(), 24u);
+}
+
+TEST(StudyPlan, TasksAreAskedAsTheyAreWritten)
+{
+    const StudyPlan study =
+        plan(3, R"({"name": "r", "kind": "rating", "statement": "Real?", "least": "no", "most": "so"},
+                                       {"name": "w", "kind": "yes-no", "question": "A wart?", "yes_for": ["b"],
+                                        "no_for": ["a"]}, )" +
+                    kPairs);
+    ASSERT_EQ(study.tasks.size(), 3u);
+    const Task &rating = study.tasks[0], &wart = study.tasks[1], &stiffer = study.tasks[2];
+    EXPECT_EQ(rating.question + "/" + rating.least + "/" + rating.most, "Real?/no/so");
+    EXPECT_EQ(wart.question, "A wart?");
+    EXPECT_EQ(wart.yes, (std::vector<std::optional<bool>>{false, true, std::nullopt}));
+    EXPECT_EQ(stiffer.question, "Which?");
+    EXPECT_EQ(stiffer.pairs, (std::vector<std::array<std::size_t, 2>>{{0, 1}, {0, 2}}));
+    EXPECT_EQ(stiffer.right, 1u);
+}
+
+TEST(StudyPlan, HasAsManyConditionsTasksAndRepetitionsAsParticipantsBear)
+{
+    const auto said = [](int conditions, int tasks, int repetitions, int pairs = 1, std::size_t text = 1) {
+        std::string list = R"({"name": "p", "kind": "two-alternative", "question": "?", "pairs": [["a", "b"])";
+        for (int n = 1; n < pairs; ++n) list += R"(, ["b", "a"])";
+        list += "]}";
+        for (int n = 1; n < tasks; ++n)
+            list += R"(, {"name": ")" + std::to_string(n) + R"(", "kind": "rating", "statement": ")" +
+                    std::string(text, 's') + R"("})";
+        return refusalOf([&] { static_cast<void>(plan(conditions, list, repetitions)); });
+    };
+    EXPECT_EQ(said(26, 20, 100, 26, 500), "");
+    EXPECT_TRUE(holds(said(27, 20, 100), {"conditions", "a list of 1 to 26 objects"}));
+    EXPECT_TRUE(holds(said(26, 21, 100), {"tasks", "a list of 1 to 20 objects"}));
+    EXPECT_TRUE(holds(said(26, 20, 101), {"repetitions", "1 to 100", "found 101"}));
+    EXPECT_TRUE(holds(said(2, 1, 1, 27), {"pairs", "a list of 1 to 26 pairs"}));
+    EXPECT_TRUE(holds(said(2, 2, 1, 1, 501), {"statement", "a text of 1 to 500 bytes"}));
 }
 
 TEST(StudyPlan, BadOnesAreRefusedInOneSentence)
@@ -202,6 +238,14 @@ TEST(StudyPlan, BadOnesAreRefusedInOneSentence)
     refused(a, R"({"name": "n", "kind": "rating", "question": "?"})", "statement");
     refused(a, R"({"name": "n", "kind": "yes-no", "question": "?", "yes_for": ["aa"]})", "name of a condition");
     refused(a, R"({"name": "n", "kind": "yes-no", "question": "?", "yes_for": ["a"], "no_for": ["a"]})", "already");
+    refused(a, R"({"name": "n", "kind": "yes-no", "question": "?", "pairs": [["a", "b"]]})", "yes_for, no_for");
+    refused(a + "," + b,
+            R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "b"]], "least": "l"})",
+            "question, pairs, right");
+    refused(a, R"({"name": "n", "kind": "yes-no", "question": "?", "yes_for": "a"})",
+            "key \"yes_for\": expected a list of names of conditions, found \"a\"");
+    refused(a + "," + b, R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", 2]]})",
+            "key \"pairs\": expected the name of a condition, found 2");
     refused(a + "," + b, R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a"]]})", "two names");
     refused(a + "," + b, R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "a"]]})",
             "twice");
@@ -210,9 +254,12 @@ TEST(StudyPlan, BadOnesAreRefusedInOneSentence)
             "first or second");
     refused(a, kRating, "repetitions", R"(, "repetitions": 0)");
     refused(a, kRating, "seconds", R"(, "seconds": 0)");
-    refused(a, kRating, "seconds", R"(, "seconds": 1e9)");
+    refused(a, kRating, "to 3600 s, found 3600.5", R"(, "seconds": 3600.5)");
     refused(a, kRating, "1.5 s, which a force needs", R"(, "seconds": 1.4)");
     refused(a, kRating, "hands", R"(, "hands": "scan")");
+    const auto large = folder.write("large.json", std::string((std::size_t(1) << 20) + 1, ' '));
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readPlan(large)); }),
+                      {"large.json: longer than 1048576 bytes; expected a plan of a study"}));
 }
 
 } // namespace

@@ -1,9 +1,11 @@
 #include "engine/tools/study/trial_table.h"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include "tests/support/temporary_folder.h"
@@ -52,6 +54,7 @@ TEST(TrialTable, GivesBackWhatWasAppendedAlsoCommasQuotesAndEmptyCells)
         for (std::uint64_t n = 1; n <= 3; ++n) {
             table.append(rowNumber(n));
             EXPECT_EQ(readTrials(folder / "trials.csv").size(), n) << "a row is on the disk at once";
+            EXPECT_EQ(table.rows().size(), n);
         }
     }
 
@@ -81,7 +84,6 @@ TEST(TrialTable, OfMoreThanAHundredThousandTrialsIsRefusedAndNotWritten)
                       {"trials.csv: line 100002", "at most 100000 trials"}));
 }
 
-/// Cut anywhere within the last row, as by a crash: the rows before it stay, and the next one follows them.
 TEST(TrialTable, APipeInItsPlaceIsNotWaitedFor)
 {
     const TemporaryFolder folder;
@@ -89,6 +91,50 @@ TEST(TrialTable, APipeInItsPlaceIsNotWaitedFor)
     EXPECT_TRUE(holds(refusalOf([&] { TrialTable table(folder / "trials.csv"); }), {"found a pipe"}));
 }
 
+/// A limit on the sizes of files, as a full disk has it, while the object lives.
+class SizeLimit {
+public:
+    explicit SizeLimit(std::size_t bytes) : signal_(std::signal(SIGXFSZ, SIG_IGN))
+    {
+        EXPECT_EQ(::getrlimit(RLIMIT_FSIZE, &before_), 0);
+        const rlimit limit{bytes, before_.rlim_max};
+        EXPECT_EQ(::setrlimit(RLIMIT_FSIZE, &limit), 0);
+    }
+    ~SizeLimit()
+    {
+        ::setrlimit(RLIMIT_FSIZE, &before_);
+        static_cast<void>(std::signal(SIGXFSZ, signal_));
+    }
+    SizeLimit(const SizeLimit&)            = delete;
+    SizeLimit& operator=(const SizeLimit&) = delete;
+
+private:
+    void (*signal_)(int);
+    rlimit before_{};
+};
+
+TEST(TrialTable, ARowForWhichThereIsNoRoomLeavesTheTableAsItWas)
+{
+    const TemporaryFolder folder;
+    const auto            file = folder / "trials.csv";
+    TrialTable            table(file);
+    table.append(rowNumber(1));
+    const std::string whole = contentsOf(file);
+    for (const std::size_t room : {0, 1, 50}) {
+        const std::string said = [&] {
+            const SizeLimit limit(whole.size() + room);
+            return refusalOf([&] { table.append(rowNumber(2)); });
+        }();
+        EXPECT_TRUE(holds(said, {"trials.csv: cannot be written: ", room ? "the disk is full" : "File too large"}))
+            << said;
+        EXPECT_EQ(contentsOf(file), whole) << room;
+        EXPECT_EQ(table.rows().size(), 1u);
+    }
+    table.append(rowNumber(2));
+    EXPECT_EQ(readTrials(file).size(), 2u);
+}
+
+/// Cut anywhere within the last row, as by a crash: the rows before it stay, and the next one follows them.
 TEST(TrialTable, ATornLastRowIsRemovedWhereverItWasTorn)
 {
     const TemporaryFolder folder;
@@ -125,7 +171,7 @@ TEST(TrialTable, ATornHeaderIsWrittenAnewAndOthersTablesAreRefused)
         TrialTable(other / "t.csv");
         return contentsOf(other / "t.csv");
     }();
-    refused("a,b\n1,2\n", "line 1");
+    refused("a,b\n1,2\n", "line 1: expected the columns " + header.substr(0, header.size() - 1) + ", found others");
     refused(header + "P01,1\n", "line 2: expected 17 columns, found 2");
     refused(header + "P01,one,1,,,,,,,,1,1,,,1,1,\n", "column trial");
     refused(header + "P01,1,1,,,,,,,maybe,1,1,,,1,1,\n", "column correct");
