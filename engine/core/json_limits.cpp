@@ -3,22 +3,29 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <utility>
 
 namespace palp {
 namespace {
 
-// What nlohmann::json takes on a machine of 64 bits [bytes].
-constexpr std::size_t kValue  = 16;      // in the memory of its list
-constexpr std::size_t kList   = 24;      // a std::vector of values
-constexpr std::size_t kObject = 48;      // a std::map
-constexpr std::size_t kMember = 32 + 16; // a node of the map with its value; its name is a text
-constexpr std::size_t kText   = 32;      // a std::string; with memory of its own from 16 bytes on
+// What nlohmann::json takes on a machine of 64 bits, with what the allocator rounds up [bytes].
+constexpr std::size_t kValue    = 16;          // in the memory of its list
+constexpr std::size_t kList     = 24;          // a std::vector of values
+constexpr std::size_t kObject   = 48 + 8;      // a std::map
+constexpr std::size_t kMember   = 32 + 16 + 8; // a node of the map with its value; its name is a text
+constexpr std::size_t kText     = 32 + 8;      // a std::string; with memory of its own from 16 bytes on
+constexpr std::size_t kRounding = 16;          // of an allocation of any size, at most
 
-constexpr JsonExcess kTooDeep{
-    0, "expected lists and objects of JSON in at most 100 levels, found more; is a bracket missing?"};
-constexpr JsonExcess kTooMuch{
-    0, "expected JSON that takes at most 8 times its own size in memory and 4 MiB beside it, found so "
-       "many lists, objects or numbers of a few bytes that it takes more; is the file damaged?"};
+constexpr std::string_view kNoValue = " \t\r\n]/"; // what may stand before the first value of a list, or in its place
+
+/// What is read is kept twice until the next text or number begins, in memory that doubles [1].
+constexpr std::size_t kOfReading = 4;
+
+constexpr std::string_view kTooDeep =
+    "expected lists and objects of JSON in at most 100 levels, found more; is it damaged, or is a bracket missing?";
+constexpr std::string_view kTooMuch =
+    "expected JSON that takes at most 8 times the file's size in memory and 4 MiB beside it, found so many lists, "
+    "objects, texts or numbers of a few bytes that it takes more; is it damaged?";
 static_assert(kDeepestJson == 100 && kMostPerByteOfJson == 8 && kMostBesideJson == std::size_t(4) << 20);
 
 /// Returns the byte behind a text or a comment that begins at `i`, behind the end where it has none; `i` where none begins.
@@ -47,20 +54,38 @@ public:
         if (areTooMany()) return;
         open_[std::size_t(depth_)] = {list, 0};
         take(list ? kList : kObject);
-        if (list) next(); // as if every list had a value
     }
-    void close() noexcept { depth_ = std::max(depth_ - 1, 0); }
-    /// One more value of the list that is open, whose memory doubles when it is full.
+    void close() noexcept
+    {
+        waiting_ -= std::exchange(open_[std::size_t(depth_)].values, 0);
+        depth_ = std::max(depth_ - 1, 0);
+    }
+    [[nodiscard]] bool areInList() const noexcept { return open_[std::size_t(depth_)].list; }
+    [[nodiscard]] bool areInEmptyList() const noexcept { return areInList() && open_[std::size_t(depth_)].values == 0; }
+    /// One more value of the list or object that is open. The memory of a list doubles when it is full.
     void next() noexcept
     {
-        Level& level = open_[std::size_t(depth_)];
-        if (!level.list) return;
+        Level&            level  = open_[std::size_t(depth_)];
         const std::size_t before = level.values++;
-        if (before > 0 && !std::has_single_bit(before)) return;
-        most_ = std::max(most_, taken_ + 2 * before * kValue); // both are there while the old one is moved
-        take(std::max<std::size_t>(before, 1) * kValue);
+        ++waiting_;
+        const std::size_t open =
+            std::min(waiting_, std::size_t(std::max(depth_ - 1, 0))); // fewer wait in what is no JSON
+        mostWaiting_ = std::max(mostWaiting_, waiting_ - open);
+        if (depth_ == 1) ofAll_ = std::max(ofAll_, level.values);
+        if (!level.list || (before > 0 && !std::has_single_bit(before))) return;
+        most_ = std::max(most_, taken_ + 2 * before * kValue + kRounding); // both are there while the old one is moved
+        take(before > 0 ? before * kValue : kValue + kRounding);
     }
     void take(std::size_t bytes) noexcept { most_ = std::max(most_, taken_ += bytes); }
+
+    /// What the library takes to free all values: it puts them on a stack, level by level and the last ones first, that has
+    /// room for the values of the outermost level, and doubles when it is full [bytes].
+    [[nodiscard]] std::size_t mostToFree() const noexcept
+    {
+        std::size_t room = std::max<std::size_t>(ofAll_, 1), most = room * kValue;
+        for (; room < mostWaiting_; room *= 2) most = 3 * room * kValue; // the old one and the new one
+        return taken_ + most;
+    }
 
 private:
     struct Level {
@@ -69,7 +94,9 @@ private:
     };
     std::array<Level, kDeepestJson + 1> open_{};
     int                                 depth_ = 0;
-    std::size_t                         taken_ = 0, most_ = 0; // [bytes]
+    std::size_t                         taken_ = 1024, most_ = 0; // buffers come first [bytes]
+    std::size_t waiting_ = 0, mostWaiting_ = 0; // values of the open levels, but for those that are open
+    std::size_t ofAll_ = 0;                     // values of the outermost level
 };
 
 } // namespace
@@ -78,17 +105,29 @@ std::optional<JsonExcess> excessOf(std::string_view json, std::size_t input) noe
 {
     const std::size_t limit = kMostPerByteOfJson * std::max(input, json.size()) + kMostBesideJson;
     Levels            levels;
+    std::size_t       began = 0, longest = 0; // [bytes] the last text or number began; the most from one to the next
+    bool              inNumber = false;
     for (std::size_t i = 0; i < json.size();) {
         const std::size_t next = behindText(json, i);
-        if (json[i] == '[' || json[i] == '{') levels.open(json[i] == '[');
-        if (json[i] == ']' || json[i] == '}') levels.close();
-        if (json[i] == ',') levels.next();
-        if (json[i] == ':') levels.take(kMember);
-        if (json[i] == '"') levels.take(kText + (next - i > 17 ? next - i : 0));
-        if (levels.areTooMany()) return JsonExcess{i, kTooDeep.what};
-        if (levels.most() > limit) return JsonExcess{i, kTooMuch.what};
+        const char        c    = json[i];
+        if (levels.areInEmptyList() && kNoValue.find(c) == std::string_view::npos) levels.next();
+        if (c == '[' || c == '{') levels.open(c == '[');
+        if (c == ']' || c == '}') levels.close();
+        if (c == ',' && levels.areInList()) levels.next();
+        if (c == ':') {
+            levels.take(kMember);
+            levels.next();
+        }
+        if (c == '"') levels.take(kText + (next - i > 17 ? next - i + kRounding : 0));
+        const bool isDigit = c == '-' || (c >= '0' && c <= '9');
+        if (c == '"' || (isDigit && !inNumber)) began = i;
+        inNumber = isDigit || (inNumber && (c == '.' || c == '+' || c == 'e' || c == 'E'));
+        longest  = std::max(longest, next - began);
+        if (levels.areTooMany()) return JsonExcess{i, kTooDeep};
+        if (levels.most() + kOfReading * longest > limit) return JsonExcess{i, kTooMuch};
         i = std::max(next, i + 1); // perhaps beyond the end, where a comment has none
     }
+    if (levels.mostToFree() > limit) return JsonExcess{json.size(), kTooMuch};
     return {};
 }
 

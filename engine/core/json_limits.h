@@ -20,7 +20,7 @@ struct JsonExcess {
 };
 
 /// Returns where a text opens a level beyond kDeepestJson, or takes more memory than the above; nothing if it never does.
-/// The memory is counted as nlohmann::json takes it, without the allocator's own. Comments, /* */ and //, are skipped.
+/// The memory is counted as nlohmann::json takes it to read the text and to free it. Comments, /* */ and //, are skipped.
 /// Text that is no JSON may be judged wrongly, but only behind the byte where a parser stops.
 /// \param input  size of what the text is a part of, such as a file [bytes]; 0: the text is all of it
 [[nodiscard]] std::optional<JsonExcess> excessOf(std::string_view json, std::size_t input = 0) noexcept;

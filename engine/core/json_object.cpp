@@ -117,8 +117,10 @@ JsonObject JsonObject::parse(std::string_view text, std::string where)
     if (const auto excess = excessOf(text))
         throw Error(where + ": line " + std::to_string(1 + std::ranges::count(text.substr(0, excess->at), '\n')) +
                     ": " + std::string(excess->what));
-    RefuseTwins twins(where); // before the values take memory, too
-    Json::sax_parse(text.begin(), text.end(), &twins, Json::input_format_t::json, true, true); // whole, with comments
+    { // before the values take memory too
+        RefuseTwins twins(where);
+        Json::sax_parse(text.begin(), text.end(), &twins, Json::input_format_t::json, true, true); // with comments
+    }
     auto whole = std::make_shared<Json>();
     try {
         constexpr bool kThrow = true, kIgnoreComments = true;
@@ -255,6 +257,21 @@ std::vector<std::vector<double>> JsonObject::rows(std::string_view key, std::siz
                         " in every entry, found " +
                         shortened(row.dump(-1, ' ', false, Json::error_handler_t::replace)));
     return value.get<std::vector<std::vector<double>>>();
+}
+
+std::vector<std::string> JsonObject::texts(std::string_view key) const
+{
+    const Json& value = node_->at(key, where_);
+    if (!value.is_array() || !std::ranges::all_of(value, [](const Json& v) { return v.is_string(); }))
+        refuse(key, "a list of texts");
+    return value.get<std::vector<std::string>>();
+}
+
+std::vector<std::string> JsonObject::keys() const
+{
+    std::vector<std::string> all;
+    for (const auto& [key, value] : node_->value.items()) all.push_back(key);
+    return all;
 }
 
 std::vector<int> JsonObject::wholeNumbers(std::string_view key, std::size_t count, int least, int most) const

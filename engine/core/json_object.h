@@ -29,17 +29,19 @@ public:
     void allowOnly(std::initializer_list<std::string_view> known) const;
     void allowOnly(std::span<const std::string_view> known) const;
 
-    [[nodiscard]] bool has(std::string_view key) const;
+    [[nodiscard]] bool                     has(std::string_view key) const;
+    [[nodiscard]] std::vector<std::string> keys() const;
 
     // All functions below throw Error if the key is missing or its value has another type.
-    [[nodiscard]] Kind                kind(std::string_view key) const;
-    [[nodiscard]] std::string         json(std::string_view key) const; ///< the value as JSON on one line
-    [[nodiscard]] JsonObject          object(std::string_view key) const;
-    [[nodiscard]] std::string         text(std::string_view key) const;
-    [[nodiscard]] double              number(std::string_view key) const;
-    [[nodiscard]] double              positiveNumber(std::string_view key) const;
-    [[nodiscard]] int                 wholeNumber(std::string_view key, int least, int most) const;
-    [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count) const;
+    [[nodiscard]] Kind                     kind(std::string_view key) const;
+    [[nodiscard]] std::string              json(std::string_view key) const; ///< the value as JSON on one line
+    [[nodiscard]] JsonObject               object(std::string_view key) const;
+    [[nodiscard]] std::string              text(std::string_view key) const;
+    [[nodiscard]] double                   number(std::string_view key) const;
+    [[nodiscard]] double                   positiveNumber(std::string_view key) const;
+    [[nodiscard]] int                      wholeNumber(std::string_view key, int least, int most) const;
+    [[nodiscard]] std::vector<double>      numbers(std::string_view key, std::size_t count) const;
+    [[nodiscard]] std::vector<std::string> texts(std::string_view key) const; ///< a list of them
     /// Returns a list of lists of `count` numbers each.
     [[nodiscard]] std::vector<std::vector<double>> rows(std::string_view key, std::size_t count) const;
     [[nodiscard]] std::vector<int> wholeNumbers(std::string_view key, std::size_t count, int least, int most) const;

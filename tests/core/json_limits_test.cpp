@@ -1,18 +1,15 @@
 #include "engine/core/json_limits.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/json_object.h"
+#include "tests/support/memory_use.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -61,39 +58,13 @@ TEST(JsonLimits, BracketsOfTextsAndCommentsAreNone)
         EXPECT_EQ(excessAt(cut), std::nullopt) << cut;
 }
 
-std::size_t live = 0, peak = 0; // [bytes] in values of Counted
-
-/// An allocator of JSON's values that counts. The letters of longer texts are not among them.
-template <typename T>
-struct Counting {
-    using value_type = T;
-    Counting()       = default;
-    template <typename Other>
-    Counting(const Counting<Other>&)
-    {
-    }
-    T* allocate(std::size_t count)
-    {
-        peak = std::max(peak, live += count * sizeof(T));
-        return std::allocator<T>().allocate(count);
-    }
-    void deallocate(T* memory, std::size_t count)
-    {
-        live -= count * sizeof(T);
-        std::allocator<T>().deallocate(memory, count);
-    }
-    friend bool operator==(const Counting&, const Counting&) { return true; }
-};
-using Counted =
-    nlohmann::basic_json<std::map, std::vector, std::string, bool, std::int64_t, std::uint64_t, double, Counting>;
-
-/// Returns the most memory that parsing takes, beside the text [bytes].
+/// Returns the most memory that reading a text and freeing it takes, beside the text [bytes].
 std::size_t memoryOf(const std::string& json)
 {
-    const std::size_t before = peak = live;
-    const Counted read = Counted::parse(json, nullptr, false, true);
-    EXPECT_FALSE(read.is_discarded());
-    return peak - before;
+    const std::size_t before = memoryNow();
+    forgetMostMemory();
+    EXPECT_FALSE(nlohmann::json::parse(json, nullptr, false, true).is_discarded());
+    return mostMemory() - before;
 }
 
 std::string repeated(const std::string& first, const std::string& one, std::size_t count, const std::string& last)
@@ -127,6 +98,11 @@ const Shape kShapes[] = {
     {"long words", "[", "\"abcdefghijklmnopqrstuvwxyzabcdefghijklmnopqrstuvwxyz\",", "1]", false},
     {"measured places", "[", "[0.01234, -0.0234, 1.25e-3],\n", "[]]", false},
     {"comments", "[", "/* {},{},{},{} */", "1]", false},
+    {"short places", "[", "[1,2],", "[]]", true},
+    {"literals", "[", "true,", "null]", true},
+    {"blanks", "[", "          ", "1]", false},
+    {"a long number", "[0.", "1234567890", "]", false},
+    {"a long text", "[\"", "abcdefghij", "\"]", false},
 };
 
 TEST(JsonLimits, MemoryIsWhatTheLibraryTakesAtMost)
@@ -144,6 +120,29 @@ TEST(JsonLimits, MemoryIsWhatTheLibraryTakesAtMost)
     }
 }
 
+TEST(JsonLimits, MemoryOfManyNamesIsWhatTheLibraryTakesAtMost)
+{
+    for (const char* name : {"", "a name of more than fifteen bytes "}) {
+        SCOPED_TRACE(name);
+        std::string text = "{", read;
+        for (int n = 0; n < 200'000 && !excessOf(text + "}"); n += 5'000) {
+            read = text + "}";
+            for (int k = n; k < n + 5'000; ++k)
+                text += (k > 0 ? ",\"" : "\"") + std::string(name) + std::to_string(k) + "\":1";
+        }
+        EXPECT_EQ(excessOf(text + "}").has_value(), *name == '\0') << "short names take most";
+        EXPECT_LE(memoryOf(read), kMostPerByteOfJson * read.size() + kMostBesideJson);
+    }
+}
+
+TEST(JsonLimits, WhatIsNoJsonIsScannedToItsEnd)
+{
+    for (const char* piece :
+         {"{", "}", "[", "]", ":", ",", "{:", "}:", "]:", ":}", "{]", "[}", "{{:}", ":]]", "[,]}", "-e+"})
+        EXPECT_LE(excessAt(repeated("", piece, 100'000, "")).value_or(0), 400'000u) << piece;
+    EXPECT_EQ(excessAt(repeated("", ":}", 1000, "{{{:")), std::nullopt);
+}
+
 TEST(JsonLimits, WhatATextIsAPartOfCounts)
 {
     const std::string text = repeated("[", "{},", 1'000'000, "{}]");
@@ -153,11 +152,13 @@ TEST(JsonLimits, WhatATextIsAPartOfCounts)
 
 TEST(JsonLimits, AnObjectThatTakesTooMuchMemoryIsRefusedByItsLine)
 {
-    const std::string text = repeated("{\"cells\":\n[", "{},\n", 100'000, "{}]}");
+    const std::string text = repeated("{\"cells\":\n[", "{},\n", 50'000, "{}]}");
     EXPECT_EQ(JsonObject::parse(text, "small.json").kind("cells"), JsonObject::Kind::list);
     const std::string more = repeated("{\"cells\":\n[", "{},\n", 1'000'000, "{}]}");
+    const auto line = std::to_string(1 + std::count(more.begin(), more.begin() + long(excessAt(more).value()), '\n'));
+    EXPECT_GT(line.size(), 5u) << "where it gets too much, not where it begins";
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(JsonObject::parse(more, "wide.json")); }),
-                      {"wide.json: line ", "8 times its own size in memory"}));
+                      {"wide.json: line " + line + ": expected", "8 times the file's size in memory"}));
 }
 
 TEST(JsonLimits, AnObjectThatIsTooDeepIsRefusedByItsLine)

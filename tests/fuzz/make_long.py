@@ -227,7 +227,7 @@ def cells_of_nothing(count):
 # What single readers once took too long for, or too much memory.
 SHAPES = {
     ("text", "same"): same, ("ply", "bits"): bits, ("ply", "faces"): faces, ("probes", "single"): single,
-    ("trials", "conditions"): conditions, ("trials", "short"): cells_of_nothing,
+    ("trials", "lines"): lambda count: trials(0) + "\n" * count, ("trials", "conditions"): conditions, ("trials", "short"): cells_of_nothing,
     ("vtk", "parts"): lambda count: vtk(9).split("POINT_DATA")[0] + "CELLS 0 0\n" * count,
     ("recording", "keys"): lambda count: 's{"format": 1, "clock": "virtual", "device": "host", "command": "palpate", "scene": {%s}}'
     % ", ".join('"k%d": 1' % n for n in range(count)),

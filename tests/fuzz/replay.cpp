@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <atomic>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
@@ -9,12 +8,10 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
-#include <new>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include <malloc.h>
 #include <unistd.h>
 
 // palp_fuzz_replay SEEDS...: gives each harness the seeds of its folder in SEEDS, whole, cut short, and with single bytes
@@ -27,6 +24,7 @@
 // palp_fuzz_replay --few SEEDS...: the same with few damages, for valgrind.
 
 #include "tests/fuzz/fuzz_expect.h"
+#include "tests/support/memory_use.h"
 
 #define PALPATE_HARNESS(name) extern "C" int fuzz_##name(const std::uint8_t*, std::size_t);
 #include "fuzz_harnesses.def"
@@ -44,8 +42,6 @@ constexpr Named kHarnesses[] = {
 #include "fuzz_harnesses.def"
 #undef PALPATE_HARNESS
 };
-
-std::atomic<std::size_t> live{0}, peak{0}; // [bytes] that operator new gave
 
 /// [bytes] of memory that reading takes for each byte of an input. A point takes 32 in memory, and 16 more while equal
 /// places are looked for; the shortest row of text that can be told from thousands of others, "12 34 5\n", has 8 bytes.
@@ -69,7 +65,7 @@ constexpr std::size_t kMiB          = std::size_t(1) << 20;
 constexpr Exception   kExceptions[] = {
       // Its objects have plates of 8 cells, a solver and a session with its thread.
     {"capi", "", {kMostPerByte, 2 * kMiB}},
-    // JSON takes 8 times its size and 4 MiB; more is refused, see json_limits.h. A scene's "below" is read a second time.
+    // JSON takes 8 times its size and 4 MiB; more is refused, see json_limits.h. A part of a scene or a plan is read twice.
     {"", "wide", {kMostPerByte, 4 * kMiB}},
     {"haply", "long", {kMostPerByte, 4 * kMiB}},
     {"recording", "keys", {kMostPerByte, 4 * kMiB}},
@@ -79,7 +75,9 @@ constexpr Exception   kExceptions[] = {
     // A probe takes 600, and 10 000 are the most.
     {"probes", "single", {kMostPerByte, 6 * kMiB}},
     // A trial takes 430 and at least 38 in the file, and 100 000 are the most.
-    {"trials", "", {kMostPerByte, 5 * kMiB}},
+    {"trials", "long", {kMostPerByte, 5 * kMiB}},
+    {"trials", "short", {kMostPerByte, 5 * kMiB}},
+    {"trials", "conditions", {kMostPerByte, 5 * kMiB}},
     // A triangle takes 12, and their list is copied as it grows; a corner may have a number of one byte.
     {"ply", "bits", {36, kMostBeside}},
 };
@@ -122,11 +120,11 @@ public:
     {
         ++inputs_;
         input                    = &bytes;
-        const std::size_t before = live;
-        peak                     = before;
-        mostRead                 = 0;
+        const std::size_t before = palp::memoryNow();
+        palp::forgetMostMemory();
+        mostRead = 0;
         harness_.run(bytes.data(), bytes.size());
-        const std::size_t taken = mostRead > 0 ? mostRead : peak - before;
+        const std::size_t taken = mostRead > 0 ? mostRead : palp::mostMemory() - before;
         most_                   = std::max(most_, taken);
         if (taken > memory_.beside + memory_.perByte * bytes.size()) {
             std::fprintf(stderr, "%zu bytes of memory for an input of %zu\n", taken, bytes.size());
@@ -189,7 +187,7 @@ Verdict verdictOn(const std::string& file)
 {
     if (file == "long") return Verdict::accepted;
     for (const char* const once :
-         {"deep", "wide", "markers", "parts", "tasks"}) // what took a time is refused at once now
+         {"deep", "wide", "markers", "parts", "tasks", "lines"}) // what took a time is refused at once now
         if (file == once) return Verdict::refused;
     return file == "same" || file == "bits" || file == "conditions" || file == "short" || file == "elements" ||
                    file == "faces"
@@ -241,29 +239,14 @@ bool isLinear(const char* shorts, const char* longs)
 
 } // namespace
 
-void* operator new(std::size_t size)
-{
-    void* const memory = std::malloc(size ? size : 1);
-    if (!memory) throw std::bad_alloc();
-    const std::size_t now = live += ::malloc_usable_size(memory);
-    for (std::size_t most = peak; now > most && !peak.compare_exchange_weak(most, now);) {
-    }
-    return memory;
-}
-void operator delete(void* memory) noexcept
-{
-    if (memory) live -= ::malloc_usable_size(memory);
-    std::free(memory);
-}
-void operator delete(void* memory, std::size_t) noexcept
-{
-    operator delete(memory);
-}
-
 int main(int count, char** arguments)
 {
     for (const int signal : {SIGABRT, SIGSEGV, SIGBUS, SIGFPE, SIGILL}) std::signal(signal, keep);
-    palp::fuzzReading = {[] { peak = atBegin = live; }, [] { mostRead = std::max(mostRead, peak - atBegin); }};
+    palp::fuzzReading = {[] {
+                             palp::forgetMostMemory();
+                             atBegin = palp::memoryNow();
+                         },
+                         [] { mostRead = std::max(mostRead, palp::mostMemory() - atBegin); }};
     std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);
     if (count == 4 && std::string(arguments[1]) == "--linear") return isLinear(arguments[2], arguments[3]) ? 0 : 1;
     const bool few    = count > 1 && std::string(arguments[1]) == "--few";

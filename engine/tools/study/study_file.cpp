@@ -19,27 +19,16 @@ std::optional<std::string> textIn(const JsonObject& file, const char* key)
     return file.has(key) ? std::optional(file.text(key)) : std::nullopt;
 }
 
-std::vector<std::string> cloudsIn(const JsonObject& file)
-{
-    if (file.kind("clouds") != JsonObject::Kind::list) file.refuse("clouds", "a list of texts");
-    const Json               list = Json::parse(file.json("clouds"));
-    std::vector<std::string> clouds;
-    for (const Json& cloud : list) {
-        if (!cloud.is_string()) file.refuse("clouds", "a list of texts");
-        clouds.push_back(cloud);
-    }
-    return clouds;
-}
-
 std::map<std::string, std::optional<double>> feltIn(const JsonObject& file)
 {
     std::map<std::string, std::optional<double>> felt;
     if (!file.has(kFelt)) return felt;
     if (file.kind(kFelt) != JsonObject::Kind::object) file.refuse(kFelt, "an object of numbers");
-    const Json object = Json::parse(file.json(kFelt));
-    for (const auto& [condition, stiffness] : object.items()) {
-        if (!stiffness.is_number() && !stiffness.is_null()) file.refuse(kFelt, "an object of numbers");
-        felt[condition] = stiffness.is_number() ? std::optional<double>(stiffness) : std::nullopt;
+    const JsonObject object = file.object(kFelt);
+    for (const std::string& condition : object.keys()) {
+        const bool isNumber = object.kind(condition) == JsonObject::Kind::number;
+        if (!isNumber && object.json(condition) != "null") file.refuse(kFelt, "an object of numbers");
+        felt[condition] = isNumber ? std::optional(object.number(condition)) : std::nullopt;
     }
     return felt;
 }
@@ -53,7 +42,7 @@ StudyFile parseStudyFile(std::string_view text, const std::string& what)
     return {.participant   = file.text("participant"),
             .title         = textIn(file, "title").value_or(""),
             .plan          = file.text("plan"),
-            .clouds        = cloudsIn(file),
+            .clouds        = file.texts("clouds"),
             .hand          = textIn(file, "hand"),
             .clock         = textIn(file, "clock"),
             .feltStiffness = feltIn(file),

@@ -179,7 +179,8 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
         throw Error(file.string() + ": line 1: expected the columns " + head.substr(0, head.size() - 1) +
                     ", found others");
     std::vector<TrialRow> rows;
-    rows.reserve(std::min(std::size_t(std::ranges::count(text, '\n')), kMostTrials)); // they are large
+    constexpr std::size_t kShortest = 38; // [bytes] of a row, but for the first ones
+    rows.reserve(std::min({std::size_t(std::ranges::count(text, '\n')), text.size() / kShortest, kMostTrials}));
     std::size_t number = 2;
     for (std::size_t begin = head.size(); begin < text.size(); ++number) {
         const std::size_t end   = text.find('\n', begin);

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Whole solves of plates of every size, a session and a picture under Vulkan's validation layer: with synchronization checks,
-# and with shaders that check each access. Any message fails. Arguments: palpate, a folder that may be emptied, and the samples.
+# Whole solves of plates of 24 to 512 cells, a shell, a session and fused passes under Vulkan's validation layer: with
+# synchronization checks, and with shaders that check each access. Any message fails. Arguments: palpate, a folder that may be emptied, and the samples.
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 palpate=$1 work=$2 samples=$3
