@@ -211,6 +211,11 @@ def bits(count):
     return head + b"".join(struct.pack("<3f", *p[:3]) for p in points(200)) + bytes([200, *corners]) * (count // 10)
 
 
+def digits(count):
+    """Polygons of nine corners each, whose numbers have a digit."""
+    return "".join("v %g %g %g\n" % p[:3] for p in points(10)) + ("f " + " ".join(str(n) for n in range(1, 10)) + "\n") * count
+
+
 def single(count):
     return "depth,force,probe\n" + "".join("%d,1,%x\n" % (n % 2, n) for n in range(count))
 
@@ -226,7 +231,7 @@ def cells_of_nothing(count):
 
 # What single readers once took too long for, or too much memory.
 SHAPES = {
-    ("text", "same"): same, ("ply", "bits"): bits, ("ply", "faces"): faces, ("probes", "single"): single,
+    ("text", "same"): same, ("ply", "bits"): bits, ("obj", "digits"): digits, ("ply", "faces"): faces, ("probes", "single"): single,
     ("trials", "lines"): lambda count: trials(0) + "\n" * count, ("trials", "conditions"): conditions, ("trials", "short"): cells_of_nothing,
     ("vtk", "parts"): lambda count: vtk(9).split("POINT_DATA")[0] + "CELLS 0 0\n" * count,
     ("recording", "keys"): lambda count: 's{"format": 1, "clock": "virtual", "device": "host", "command": "palpate", "scene": {%s}}'

@@ -78,8 +78,8 @@ constexpr Exception   kExceptions[] = {
     {"trials", "long", {kMostPerByte, 5 * kMiB}},
     {"trials", "short", {kMostPerByte, 5 * kMiB}},
     {"trials", "conditions", {kMostPerByte, 5 * kMiB}},
-    // A triangle takes 12, and their list is copied as it grows; a corner may have a number of one byte.
-    {"ply", "bits", {36, kMostBeside}},
+    // A triangle takes 12; a corner may have a number of one byte.
+    {"ply", "bits", {14, kMostBeside}},
 };
 
 Memory memoryOf(std::string_view harness, std::string_view file)

@@ -15,6 +15,7 @@ FaceRows::FaceRows(const ByteReader& reader, std::uint64_t points) : reader_(rea
 
 void FaceRows::expect(std::uint64_t faces, std::uint64_t leastBytes)
 {
+    promised_ += faces;
     makeRoomFor(triangles_, triangles_.size() + std::size_t(std::min(faces, reader_.remaining() / leastBytes + 1)));
 }
 
@@ -27,8 +28,22 @@ void FaceRows::addCorner(double corner, CloudRows::Place place)
         if (place == CloudRows::Place::line) reader_.failAtLine(message);
         reader_.fail("before byte " + std::to_string(reader_.offset()) + ": " + message);
     }
+    if (faces_ == 0 && corners_.empty()) began_ = reader_.offset();
     // With more corners than points one occurs twice, whatever the others are.
     if (corners_.size() <= points_) corners_.push_back(std::uint32_t(corner));
+}
+
+/// Makes room for so many triangles, and for those that follow if the file goes on as it has so far: a list that doubles
+/// takes three times its memory while it is moved.
+void FaceRows::makeRoom(std::size_t count)
+{
+    if (count <= triangles_.capacity()) return;
+    const auto   read = double(reader_.offset() - began_), rest = double(reader_.remaining());
+    const double each  = double(count) / double(faces_);
+    const double bytes = read > 0 ? std::min(1.0, double(count) / read) * rest : 0;
+    const double faces = promised_ > 0 ? each * double(promised_ - std::min<std::uint64_t>(promised_, faces_)) : bytes;
+    triangles_.reserve(std::max(count + std::size_t(1.02 * std::min(bytes, faces)),
+                                triangles_.capacity() + triangles_.capacity() / 8));
 }
 
 bool FaceRows::cornersDiffer()
@@ -42,6 +57,7 @@ void FaceRows::endFace()
 {
     ++faces_;
     if (corners_.size() >= 3 && cornersDiffer()) {
+        makeRoom(triangles_.size() + corners_.size() - 2);
         for (std::size_t k = 2; k < corners_.size(); ++k)
             triangles_.push_back({corners_[0], corners_[k - 1], corners_[k]});
         fans_.push_back(std::uint32_t(corners_.size() - 2));

@@ -35,12 +35,15 @@ public:
     void finish(LoadedCloud& loaded);
 
 private:
+    void                                makeRoom(std::size_t count);
     [[nodiscard]] bool                  cornersDiffer();
     void                                keepWithinPolygons(const LoadedCloud& loaded);
     [[nodiscard]] std::vector<Triangle> byPoints(std::span<const std::uint32_t> pointOfRow, CloudFileReport& report);
 
     const ByteReader&          reader_;
     std::uint64_t              points_;
+    std::uint64_t              promised_ = 0; ///< faces by the file's header; 0: it does not tell
+    std::uint64_t              began_    = 0; ///< offset behind the first corner [bytes]
     std::vector<std::uint32_t> corners_; ///< of the face that is being read, one more than there are points at most
     std::vector<std::uint32_t> sorted_;  ///< scratch
     std::vector<Triangle>      triangles_;
