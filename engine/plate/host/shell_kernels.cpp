@@ -183,8 +183,42 @@ template <bool kTogether, class Visit>
 
 // The residual b - K x, or without b the product K x.
 
-template <int kSpan, bool kTogether, int kOdd, class Real, class Entry, class Stored>
-void applyRow(const ShellLayout& l, const Entry* entries, const Stored* b, const Stored* x, Stored* to, int i)
+/// What applyRow does with the results besides.
+struct NoSums {
+    template <class Stored>
+    void add(const Together<Stored>&, const Stored*, const Stored*)
+    {
+    }
+};
+/// Sums of x and of the right side times what comes out, so that memory is not gone over again.
+struct ProductSums {
+    Together<double> ofX{0.0}, ofRight{0.0}; ///< results times x; x times the right side, if there is one
+
+    [[gnu::always_inline]] void add(const Together<float>& result, const float* x, const float* b)
+    {
+        const Together<double> at(eightOf(x));
+        ofX += at * Together<double>(result);
+        if (b) ofRight += at * Together<double>(eightOf(b));
+    }
+};
+
+/// Adds x K x of a row's nodes of one parity, of eight loads, by K in floats.
+template <int kSpan, int kOdd>
+void addSteepness(const ShellLayout& l, const float* entries, const float* x, int i, Together<double>& sums)
+{
+    const RowOfShell<kSpan, true, kOdd, float, float, float> row(l, entries, x, i);
+    const std::ptrdiff_t                                     other = std::ptrdiff_t(2) * l.span * kLanes;
+    eachPlace<true>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
+        Together<float> w, f;
+        row.apply(m, w, f);
+        const float* at = row.fields + m * kLanes;
+        sums += Together<double>(eightOf(at) * w + eightOf(at + other) * f);
+    });
+}
+
+template <int kSpan, bool kTogether, int kOdd, class Real, class Entry, class Stored, class Sums>
+void applyRow(const ShellLayout& l, const Entry* entries, const Stored* b, const Stored* x, Stored* to, int i,
+              Sums& sums)
 {
     constexpr int                                                 kLoads = loadsOf(kTogether);
     const RowOfShell<kSpan, kTogether, kOdd, Real, Entry, Stored> row(l, entries, x, i);
@@ -192,29 +226,34 @@ void applyRow(const ShellLayout& l, const Entry* entries, const Stored* b, const
     eachPlace<kTogether>(l.cellsZ, kOdd, [&](std::ptrdiff_t m) {
         Together<Real> w, f;
         row.apply(m, w, f);
-        const std::ptrdiff_t place = at + m * kLoads;
+        const std::ptrdiff_t ofW = at + m * kLoads, ofF = ofW + other;
         if (b) {
-            w = read<Real>(b + place) - w;
-            f = read<Real>(b + place + other) - f;
+            w = read<Real>(b + ofW) - w;
+            f = read<Real>(b + ofF) - f;
         }
-        store(to + place, Together<Stored>(w));
-        store(to + place + other, Together<Stored>(f));
+        const Together<Stored> storedW(w), storedF(f);
+        store(to + ofW, storedW);
+        store(to + ofF, storedF);
+        sums.add(storedW, x + ofW, b ? b + ofW : nullptr);
+        sums.add(storedF, x + ofF, b ? b + ofF : nullptr);
     });
 }
 
-template <bool kTogether, class Real, class Entry, class Stored>
-void applyAll(const HostDispatch& d, const Stored* b, int fieldsFrom)
+template <bool kTogether, class Real, class Entry, class Stored, class Sums = NoSums>
+Sums applyAll(const HostDispatch& d, const Stored* b, int fieldsFrom)
 {
     const ShellLayout& l       = pushed<ShellPush>(d).layout;
     const Entry*       entries = bound<const Entry>(d, 0);
     const Stored*      x       = bound<const Stored>(d, fieldsFrom);
     Stored*            to      = bound<Stored>(d, fieldsFrom + 1);
+    Sums               sums;
     bySpan(l.span, [&]<int kSpan>(KnownSpan<kSpan>) {
         for (int i = 0; i <= l.cellsX; ++i) {
-            applyRow<kSpan, kTogether, 0, Real>(l, entries, b, x, to, i);
-            applyRow<kSpan, kTogether, 1, Real>(l, entries, b, x, to, i);
+            applyRow<kSpan, kTogether, 0, Real>(l, entries, b, x, to, i, sums);
+            applyRow<kSpan, kTogether, 1, Real>(l, entries, b, x, to, i, sums);
         }
     });
+    return sums;
 }
 
 // Relaxation of one colour. Nodes of the same colour count with their values from before: changes wait until no row that
@@ -320,14 +359,15 @@ void smoothKnown(const HostDispatch& d)
     float *                            x = bound<float>(d, 2), *r = bound<float>(d, 3);
     const std::ptrdiff_t               changes    = Sweep::kWaiting * Sweep::rowOfChanges(l);
     float* const                       allChanges = scratch.of(push.halfSweeps * changes);
+    NoSums                             none;
     for (int front = 0; front <= l.cellsX + kBehind * push.halfSweeps; ++front) {
         for (int n = 0; n < push.halfSweeps; ++n)
             Sweep{l, entries, b, x, allChanges + n * changes, (push.colour + n) % 2, push.fromZero && n == 0}.advance(
                 front - kBehind * n);
         const int last = front - kBehind * push.halfSweeps;
         if (!r || last < 0) continue;
-        applyRow<kSpan, kTogether, 0, float>(l, entries, b, x, r, last);
-        applyRow<kSpan, kTogether, 1, float>(l, entries, b, x, r, last);
+        applyRow<kSpan, kTogether, 0, float>(l, entries, b, x, r, last, none);
+        applyRow<kSpan, kTogether, 1, float>(l, entries, b, x, r, last, none);
     }
 }
 
@@ -573,18 +613,34 @@ void shellApply(const HostDispatch& d)
 {
     applyAll<false, double, double, double>(d, nullptr, 1);
 }
+// Buffers: entries, x, K x; of eight loads the sums of x K x too.
 void shellApply_together(const HostDispatch& d)
 {
-    applyAll<true, double, double, float>(d, nullptr, 1);
+    store(bound<double>(d, 3), applyAll<true, double, double, float, ProductSums>(d, nullptr, 1).ofX);
 }
-// Buffers: entries, right side, answer; what is missing of the right side.
+// Buffers: entries, x of eight loads; sums of x K x, by K in floats.
+void shellSteepness(const HostDispatch& d)
+{
+    const ShellLayout& l       = pushed<ShellPush>(d).layout;
+    const float *      entries = bound<const float>(d, 0), *x = bound<const float>(d, 1);
+    Together<double>   sums(0.0);
+    bySpan(l.span, [&]<int kSpan>(KnownSpan<kSpan>) {
+        for (int i = 0; i <= l.cellsX; ++i) {
+            addSteepness<kSpan, 0>(l, entries, x, i, sums);
+            addSteepness<kSpan, 1>(l, entries, x, i, sums);
+        }
+    });
+    store(bound<double>(d, 2), sums);
+}
+// Buffers: entries, right side, answer, what is missing of the right side; of eight loads the sums of both times the answer too.
 void shellMissing(const HostDispatch& d)
 {
     applyAll<false, double, double, double>(d, bound<const double>(d, 1), 2);
 }
 void shellMissing_together(const HostDispatch& d)
 {
-    applyAll<true, double, double, float>(d, bound<const float>(d, 1), 2);
+    const auto sums = applyAll<true, double, double, float, ProductSums>(d, bound<const float>(d, 1), 2);
+    store(bound<double>(d, 4), sums.ofRight + sums.ofX);
 }
 void shellProlong(const HostDispatch& d)
 {
