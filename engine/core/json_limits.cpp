@@ -18,8 +18,9 @@ constexpr std::size_t kRounding = 16;          // of an allocation of any size, 
 
 constexpr std::string_view kNoValue = " \t\r\n]/"; // what may stand before the first value of a list, or in its place
 
-/// What is read is kept twice until the next text or number begins, in memory that doubles [1].
-constexpr std::size_t kOfReading = 4;
+/// What is read is kept twice until the next text or number begins, in memory that doubles [1]; and if it is no JSON, the
+/// library complains of all that, with eight letters for each control character, which is copied several times [bytes].
+constexpr std::size_t kOfReading = 4, kOfControl = 40;
 
 constexpr std::string_view kTooDeep =
     "expected lists and objects of JSON in at most 100 levels, found more; is it damaged, or is a bracket missing?";
@@ -105,7 +106,8 @@ std::optional<JsonExcess> excessOf(std::string_view json, std::size_t input) noe
 {
     const std::size_t limit = kMostPerByteOfJson * std::max(input, json.size()) + kMostBesideJson;
     Levels            levels;
-    std::size_t       began = 0, longest = 0; // [bytes] the last text or number began; the most from one to the next
+    std::size_t       began    = 0;              // the last text or number [bytes]
+    std::size_t       controls = 0, longest = 0; // control characters since then; memory that this took at most [bytes]
     bool              inNumber = false;
     for (std::size_t i = 0; i < json.size();) {
         const std::size_t next = behindText(json, i);
@@ -120,11 +122,16 @@ std::optional<JsonExcess> excessOf(std::string_view json, std::size_t input) noe
         }
         if (c == '"') levels.take(kText + (next - i > 17 ? next - i + kRounding : 0));
         const bool isDigit = c == '-' || (c >= '0' && c <= '9');
-        if (c == '"' || (isDigit && !inNumber)) began = i;
+        if (c == '"' || (isDigit && !inNumber)) {
+            began    = i;
+            controls = 0;
+        }
+        controls += std::size_t(std::ranges::count_if(json.substr(i, std::max(next, i + 1) - i),
+                                                      [](char of) { return of >= 0 && of < ' '; }));
         inNumber = isDigit || (inNumber && (c == '.' || c == '+' || c == 'e' || c == 'E'));
-        longest  = std::max(longest, next - began);
+        longest  = std::max(longest, kOfReading * (next - began) + kOfControl * controls);
         if (levels.areTooMany()) return JsonExcess{i, kTooDeep};
-        if (levels.most() + kOfReading * longest > limit) return JsonExcess{i, kTooMuch};
+        if (levels.most() + longest > limit) return JsonExcess{i, kTooMuch};
         i = std::max(next, i + 1); // perhaps beyond the end, where a comment has none
     }
     if (levels.mostToFree() > limit) return JsonExcess{json.size(), kTooMuch};

@@ -135,6 +135,23 @@ TEST(JsonLimits, MemoryOfManyNamesIsWhatTheLibraryTakesAtMost)
     }
 }
 
+TEST(JsonLimits, ComplaintsTakeWhatIsCounted)
+{
+    for (const char* piece : {"\n", "\t \n", " ", "/*\n*/", "true "}) {
+        SCOPED_TRACE(piece);
+        for (std::size_t count : {10'000, 100'000, 1'000'000}) {
+            const std::string text = "{\"a\": " + repeated("", piece, count, "x");
+            if (excessOf(text)) continue;
+            const std::size_t before = memoryNow();
+            forgetMostMemory();
+            EXPECT_TRUE(
+                holds(refusalOf([&] { static_cast<void>(JsonObject::parse(text, "scene")); }), {"not valid JSON"}));
+            EXPECT_LE(mostMemory() - before, kMostPerByteOfJson * text.size() + kMostBesideJson) << count;
+        }
+    }
+    EXPECT_TRUE(excessOf("{\"a\": " + repeated("", "\n", 1'000'000, "x")));
+}
+
 TEST(JsonLimits, WhatIsNoJsonIsScannedToItsEnd)
 {
     for (const char* piece :
@@ -152,7 +169,7 @@ TEST(JsonLimits, WhatATextIsAPartOfCounts)
 
 TEST(JsonLimits, AnObjectThatTakesTooMuchMemoryIsRefusedByItsLine)
 {
-    const std::string text = repeated("{\"cells\":\n[", "{},\n", 50'000, "{}]}");
+    const std::string text = repeated("{\"cells\":\n[", "{},\n", 20'000, "{}]}");
     EXPECT_EQ(JsonObject::parse(text, "small.json").kind("cells"), JsonObject::Kind::list);
     const std::string more = repeated("{\"cells\":\n[", "{},\n", 1'000'000, "{}]}");
     const auto line = std::to_string(1 + std::count(more.begin(), more.begin() + long(excessAt(more).value()), '\n'));

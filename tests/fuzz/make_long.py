@@ -216,6 +216,13 @@ def digits(count):
     return "".join("v %g %g %g\n" % p[:3] for p in points(10)) + ("f " + " ".join(str(n) for n in range(1, 10)) + "\n") * count
 
 
+def cap(count):
+    """A polygon of many corners, and triangles of long numbers: what follows is not like the first face."""
+    faces = triangles(count)
+    return "".join("v %g %g %g\n" % p[:3] for p in points(count)) + "f " + " ".join(str(n + 1) for n in range(min(count, 200))) + "\n" + \
+        "".join("f %d %d %d\n" % tuple(k + 1 for k in t) for t in faces)
+
+
 def single(count):
     return "depth,force,probe\n" + "".join("%d,1,%x\n" % (n % 2, n) for n in range(count))
 
@@ -231,7 +238,7 @@ def cells_of_nothing(count):
 
 # What single readers once took too long for, or too much memory.
 SHAPES = {
-    ("text", "same"): same, ("ply", "bits"): bits, ("obj", "digits"): digits, ("ply", "faces"): faces, ("probes", "single"): single,
+    ("text", "same"): same, ("ply", "bits"): bits, ("obj", "digits"): digits, ("obj", "cap"): cap, ("ply", "faces"): faces, ("probes", "single"): single,
     ("trials", "lines"): lambda count: trials(0) + "\n" * count, ("trials", "conditions"): conditions, ("trials", "short"): cells_of_nothing,
     ("vtk", "parts"): lambda count: vtk(9).split("POINT_DATA")[0] + "CELLS 0 0\n" * count,
     ("recording", "keys"): lambda count: 's{"format": 1, "clock": "virtual", "device": "host", "command": "palpate", "scene": {%s}}'

@@ -33,14 +33,15 @@ void FaceRows::addCorner(double corner, CloudRows::Place place)
     if (corners_.size() <= points_) corners_.push_back(std::uint32_t(corner));
 }
 
-/// Makes room for so many triangles, and for those that follow if the file goes on as it has so far: a list that doubles
-/// takes three times its memory while it is moved.
+/// Makes room for so many triangles, and once a ninth of the faces' bytes is read, for all that follow if the file goes on
+/// as it has so far: a list that doubles takes three times its memory while it is moved.
 void FaceRows::makeRoom(std::size_t count)
 {
     if (count <= triangles_.capacity()) return;
-    const auto   read = double(reader_.offset() - began_), rest = double(reader_.remaining());
+    const auto read = double(reader_.offset() - began_), rest = double(reader_.remaining());
+    if (read < rest / 8) return makeRoomFor(triangles_, count);
     const double each  = double(count) / double(faces_);
-    const double bytes = read > 0 ? std::min(1.0, double(count) / read) * rest : 0;
+    const double bytes = std::min(1.0, double(count) / read) * rest;
     const double faces = promised_ > 0 ? each * double(promised_ - std::min<std::uint64_t>(promised_, faces_)) : bytes;
     triangles_.reserve(std::max(count + std::size_t(1.02 * std::min(bytes, faces)),
                                 triangles_.capacity() + triangles_.capacity() / 8));

@@ -212,7 +212,8 @@ void addSteepness(const ShellLayout& l, const float* entries, const float* x, in
         Together<float> w, f;
         row.apply(m, w, f);
         const float* at = row.fields + m * kLanes;
-        sums += Together<double>(eightOf(at) * w + eightOf(at + other) * f);
+        sums += Together<double>(eightOf(at)) * Together<double>(w) +
+                Together<double>(eightOf(at + other)) * Together<double>(f);
     });
 }
 

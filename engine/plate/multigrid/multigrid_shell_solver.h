@@ -55,7 +55,7 @@ struct ShellAnswer {
 /// symmetric V cycle whose relaxation changes both fields of a node at once.
 ///
 /// The cycle is in floats on assembled rows, conjugate gradients and their operator are in doubles. The host takes loads by
-/// eights, whose fields are floats then; a processor of Vulkan takes them all at once, each as the host solves one alone (to
+/// eights, whose fields are floats then, and so is the operator that gives the length of their last step; a processor of Vulkan takes them all at once, each as the host solves one alone (to
 /// the bit on lavapipe, with CoarsestShell::byFactors). Three or more loads together may stop after one step, so that their
 /// answers hang on each other within the tolerance. The host assembles rows and factors for both.
 ///

@@ -116,6 +116,52 @@ TEST_F(ShellKernelsTest, ResidualAndProduct)
     expectSame(q, onNodes(l, expected), 1e3);
 }
 
+/// What the host sums over loads that lie side by side, against sums of what its kernels write.
+TEST_F(ShellKernelsTest, SumsOfEightLoads)
+{
+    const ShellLayout& l       = fine().layout;
+    const std::size_t  numbers = kLoadsTogether * numbersOf(l);
+    const auto         several = [&](int seed) {
+        const auto         values = roughValues<float>(numbers, seed);
+        std::vector<float> fields(numbers);
+        for (int i = 0; i <= l.cellsX; ++i)
+            for (int j = 0; j <= l.cellsZ; ++j)
+                for (int field = 0; field < 2; ++field)
+                    for (std::size_t n = 0; n < kLoadsTogether; ++n) {
+                        const std::size_t at = std::size_t(placeIn(l, i, j, field)) * kLoadsTogether + n;
+                        fields[at]           = values[at];
+                    }
+        return fields;
+    };
+    using Sums      = std::array<double, kLoadsTogether>;
+    const auto dots = [&](const std::vector<float>& a, const std::vector<float>& b) {
+        std::pair<Sums, Sums> all{}; // and what they are rounded by
+        for (std::size_t n = 0; n < numbers; ++n) {
+            all.first[n % kLoadsTogether] += double(a[n]) * double(b[n]);
+            all.second[n % kLoadsTogether] += std::abs(double(a[n]) * double(b[n]));
+        }
+        return all;
+    };
+    const auto         x = several(7), b = several(8);
+    std::vector<float> product(numbers), missing(numbers);
+    Sums               ofProduct{}, ofMissing{}, steepness{};
+    callHost(host_.together->shellApply, ShellPush{.layout = l},
+             {fine().exact.data(), x.data(), product.data(), ofProduct.data()});
+    callHost(host_.together->shellMissing, ShellPush{.layout = l},
+             {fine().exact.data(), b.data(), x.data(), missing.data(), ofMissing.data()});
+    callHost(host_.together->shellSteepness, ShellPush{.layout = l},
+             {fine().entries.data(), x.data(), steepness.data()});
+    const auto [xKx, xKxSize] = dots(x, product);
+    const auto [bx, bxSize]   = dots(b, x);
+    const auto [rx, rxSize]   = dots(missing, x);
+    for (std::size_t n = 0; n < kLoadsTogether; ++n) {
+        EXPECT_NEAR(ofProduct[n], xKx[n], 1e-12 * xKxSize[n]) << "the same sums in doubles, in another order";
+        EXPECT_NEAR(ofMissing[n], bx[n] + rx[n], 1e-12 * (bxSize[n] + rxSize[n]));
+        EXPECT_NEAR(steepness[n], xKx[n], 1e-5 * xKxSize[n]) << "some 80 products and sums in floats";
+        EXPECT_GT(std::abs(xKx[n]), 1e-3 * xKxSize[n]) << "then nothing is shown";
+    }
+}
+
 TEST_F(ShellKernelsTest, HalfSweeps)
 {
     const ShellLayout& l = fine().layout;

@@ -19,9 +19,9 @@ struct Gradients {
 
     /// The root of the work that is missing, over the work [1]. After the first step only missingAfter() knows. Then steps
     /// to come gain as much less as the last one did, but no less than a tenth of it and 3 % of the step before, because a
-    /// gain may be small by chance where the matrix is indefinite. Of 100 shells each with linear, wart, disc and random maps, random curvatures and edges, at tolerances
-    /// of 1e-2, 1e-3 and 1e-4, 7 of the 1200 works miss their tolerance's square, six of them on random maps, by up to
-    /// five times.
+    /// gain may be small by chance where the matrix is indefinite. Of 100 shells each with linear, wart, disc and random
+    /// maps, random curvatures and edges, at tolerances of 1e-2, 1e-3 and 1e-4, 7 of the 1200 works miss their tolerance's
+    /// square, six of them on random maps, by up to five times.
     [[nodiscard]] double estimate() const
     {
         constexpr double kBest = 0.1, kBestOfTwo = 0.03; // gains over those of one and two steps before [1]
@@ -192,7 +192,7 @@ private:
         const PerLoad rz    = fields_.precondition();
         PerLoad       betas = fields_.none();
         for (std::size_t n = 0; n < states_.size(); ++n) {
-            betas[n]      = restarted_[n] != 0 || states_[n].rz == 0 ? 0 : rz[n] / states_[n].rz;
+            betas[n] = restarted_[n] != 0 || states_[n].rz == 0 || !std::isfinite(rz[n]) ? 0 : rz[n] / states_[n].rz;
             states_[n].rz = rz[n];
         }
         fields_.turn(betas);

@@ -105,8 +105,8 @@ private:
     std::vector<Fields>            fields_;
 };
 
-/// Vectors of conjugate gradients on the host: of one load in doubles; of eight in floats, with the operator and all sums in
-/// doubles.
+/// Vectors of conjugate gradients on the host: of one load in doubles; of eight in floats, with the operator, but for
+/// steepness(), and all sums in doubles.
 template <bool kTogether>
 class HostShellFields {
 public:
