@@ -28,7 +28,11 @@ VkSurfaceFormatKHR formatOf(const compute::VulkanContext& context, VkSurfaceKHR 
 
 } // namespace
 
-VulkanWindow::VulkanWindow(compute::VulkanContext& context, VkSurfaceKHR surface) : context_(context), surface_(surface)
+VulkanWindow::VulkanWindow(VkSurfaceKHR surface, compute::VulkanContext& context) : context_(context), surface_(surface)
+{
+}
+
+VulkanWindow::VulkanWindow(compute::VulkanContext& context, VkSurfaceKHR surface) : VulkanWindow(surface, context)
 {
     VkBool32 shows = VK_FALSE;
     check(vkGetPhysicalDeviceSurfaceSupportKHR(context.physical, context.family, surface, &shows),

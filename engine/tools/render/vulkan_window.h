@@ -34,6 +34,9 @@ public:
     void show();
 
 private:
+    /// Takes the surface, which the destructor gives back from here on, also where the public constructor throws.
+    VulkanWindow(VkSurfaceKHR surface, compute::VulkanContext& context);
+
     void makeChain(VkExtent2D size);
     void dropChain() noexcept;
 
