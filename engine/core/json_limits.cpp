@@ -25,9 +25,9 @@ constexpr std::size_t kOfReading = 4, kOfControl = 40;
 constexpr std::string_view kTooDeep =
     "expected lists and objects of JSON in at most 100 levels, found more; is it damaged, or is a bracket missing?";
 constexpr std::string_view kTooMuch =
-    "expected JSON that takes at most 8 times the file's size in memory and 4 MiB beside it, found so many lists, "
+    "expected JSON that takes at most 8 times the file's size in memory and 8 MiB beside it, found so many lists, "
     "objects, texts or numbers of a few bytes that it takes more; is it damaged?";
-static_assert(kDeepestJson == 100 && kMostPerByteOfJson == 8 && kMostBesideJson == std::size_t(4) << 20);
+static_assert(kDeepestJson == 100 && kMostPerByteOfJson == 8 && kMostBesideJson == std::size_t(8) << 20);
 
 /// Returns the byte behind a text or a comment that begins at `i`, behind the end where it has none; `i` where none begins.
 std::size_t behindText(std::string_view json, std::size_t i) noexcept

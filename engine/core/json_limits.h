@@ -11,7 +11,7 @@ inline constexpr int kDeepestJson = 100;
 
 /// Memory that JSON from outside may take once it is read: so many times its own size, and so many bytes beside it. Objects
 /// with names and numbers take about 7 times their size; a list of empty objects took 57, 900 MB for a file of 16 MiB.
-inline constexpr std::size_t kMostPerByteOfJson = 8, kMostBesideJson = std::size_t(4) << 20;
+inline constexpr std::size_t kMostPerByteOfJson = 8, kMostBesideJson = std::size_t(8) << 20;
 
 /// What is too much about a text of JSON.
 struct JsonExcess {

@@ -65,13 +65,13 @@ constexpr std::size_t kMiB          = std::size_t(1) << 20;
 constexpr Exception   kExceptions[] = {
       // Its objects have plates of 8 cells, a solver and a session with its thread.
     {"capi", "", {kMostPerByte, 2 * kMiB}},
-    // JSON takes 8 times its size and 4 MiB; more is refused, see json_limits.h. A part of a scene or a plan is read twice.
-    {"", "wide", {kMostPerByte, 4 * kMiB}},
-    {"haply", "long", {kMostPerByte, 4 * kMiB}},
-    {"recording", "keys", {kMostPerByte, 4 * kMiB}},
-    {"scene", "below", {kMostPerByte, 4 * kMiB}},
-    {"plan", "tasks", {kMostPerByte, 4 * kMiB}},
-    {"window", "long", {kMostPerByte, 4 * kMiB}},
+    // JSON takes 8 times its size and 8 MiB; more is refused, see json_limits.h. A part of a scene or a plan is read twice.
+    {"", "wide", {kMostPerByte, 8 * kMiB}},
+    {"haply", "long", {kMostPerByte, 8 * kMiB}},
+    {"recording", "keys", {kMostPerByte, 8 * kMiB}},
+    {"scene", "below", {kMostPerByte, 8 * kMiB}},
+    {"plan", "tasks", {kMostPerByte, 8 * kMiB}},
+    {"window", "long", {kMostPerByte, 8 * kMiB}},
     // A probe takes 600, and 10 000 are the most.
     {"probes", "single", {kMostPerByte, 6 * kMiB}},
     // A trial takes 430 and at least 38 in the file, and 100 000 are the most.
