@@ -130,11 +130,17 @@ grep -q 'the host took over' err.txt && pass || complain "touch, a wait without 
 # And to what a window makes for its pictures: it went on without images that could not be made, and asked for panels twice.
 case $commands in
 *view*)
+    made() { [ -s count ] && [ "$(cat count)" -ge 1 ]; }
     for call in vkCreateImage vkCreateSampler vkCreateDescriptorSetLayout vkCreateFramebuffer vkCreateBuffer vkCreateSwapchainKHR vkGetSwapchainImagesKHR vkAcquireNextImageKHR vkQueuePresentKHR; do
         for at in $twice; do
             rm -f count
             FAILING_LAYER_ONLY=$call attempt view memory $at
-            { [ -s count ] && [ "$(cat count)" -ge 1 ] && pass; } || complain "view makes no call $call: does it fail?"
+            made || { # on a busy machine the first panel comes later
+                usual=$seconds seconds=20
+                FAILING_LAYER_ONLY=$call attempt view memory $at
+                seconds=$usual
+            }
+            made && pass || complain "view makes no call $call: does it fail?"
         done
     done
     for as in lost hang; do
