@@ -93,8 +93,11 @@ void VulkanPanels::stop()
 {
     ImGuiIO& io = ImGui::GetIO();
     if (!io.BackendRendererUserData) return;
-    if (!context_.atWork()) return ImGui_ImplVulkan_Shutdown();
-    // A driver that never finished uses what would be freed: it is left behind, and ImGui forgets it.
+    if (!context_.atWork() && !isBroken_) return ImGui_ImplVulkan_Shutdown();
+    // A driver that never finished uses what would be freed, and a back end that failed may have freed it already: it is
+    // left behind, and ImGui forgets it.
+    static std::vector<void*> leftBehind;
+    leftBehind.push_back(io.BackendRendererUserData);
     io.BackendRendererUserData = nullptr;
     io.BackendRendererName     = nullptr;
 }
@@ -115,9 +118,13 @@ bool VulkanPanels::fontHasChanged()
 #endif
 }
 
-void VulkanPanels::record(VkCommandBuffer commands) const
+void VulkanPanels::record(VkCommandBuffer commands)
 {
-    if (ImDrawData* const data = ImGui::GetDrawData()) ImGui_ImplVulkan_RenderDrawData(data, commands);
+    ImDrawData* const data = ImGui::GetDrawData();
+    if (!data) return;
+    isBroken_ = true; // a buffer that cannot be made larger has been freed, and would be freed again
+    ImGui_ImplVulkan_RenderDrawData(data, commands);
+    isBroken_ = false;
 }
 
 VkExtent2D VulkanPanels::size()

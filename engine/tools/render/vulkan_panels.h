@@ -18,8 +18,10 @@ public:
     VulkanPanels(const VulkanPanels&)            = delete;
     VulkanPanels& operator=(const VulkanPanels&) = delete;
 
-    /// Records the result of ImGui::Render() into the pass that is being recorded.
-    void record(VkCommandBuffer commands) const;
+    /// Records the result of ImGui::Render() into the pass that is being recorded. Once that has thrown, the object is of no
+    /// more use.
+    void               record(VkCommandBuffer commands);
+    [[nodiscard]] bool isBroken() const noexcept { return isBroken_; } ///< it has thrown
 
     /// Returns the squares of shared::kTile of a picture that the result covers, as Overlay::tiles has them.
     [[nodiscard]] static std::vector<std::uint32_t> tiles();
@@ -35,6 +37,7 @@ private:
 
     compute::VulkanContext&                                   context_;
     compute::Owned<VkDescriptorPool, vkDestroyDescriptorPool> sets_;
+    bool                                                      isBroken_ = false;
 };
 
 } // namespace palp

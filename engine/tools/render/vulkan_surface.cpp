@@ -206,7 +206,8 @@ void VulkanSurface::fit(VkExtent2D size)
                     " a side)");
     size_        = size;
     fresh_       = true;
-    freshPanels_ = panels_ != nullptr; // into the new image
+    freshPanels_ = hasPanels(); // into the new image
+    if (!freshPanels_) panelTiles_.clear();
     for (Step* step : {&nearestStep_, &blendStep_, &surfaceStep_, &faceStep_, &panelStep_, &lightStep_})
         step->framebuffer = {};
     makeImages();
@@ -380,7 +381,7 @@ void VulkanSurface::record(const SurfaceInput& input)
 void VulkanSurface::recordPanels()
 {
 #ifdef PALPATE_PANELS
-    if (!std::exchange(freshPanels_, false)) return;
+    if (!std::exchange(freshPanels_, false) || panels_->isBroken()) return;
     const VkClearValue nothing[] = {{}};
     begin(panelStep_, nothing);
     panels_->record(commands_);
@@ -454,7 +455,7 @@ bool VulkanSurface::finish()
 bool VulkanSurface::hasPanels() const
 {
 #ifdef PALPATE_PANELS
-    return panels_ && !VulkanPanels::fontHasChanged();
+    return panels_ && !panels_->isBroken() && !VulkanPanels::fontHasChanged();
 #else
     return false;
 #endif
