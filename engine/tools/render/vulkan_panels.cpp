@@ -96,7 +96,7 @@ void VulkanPanels::stop()
     if (!context_.atWork() && !isBroken_) return ImGui_ImplVulkan_Shutdown();
     // A driver that never finished uses what would be freed, and a back end that failed may have freed it already: it is
     // left behind, and ImGui forgets it.
-    static std::vector<void*> leftBehind;
+    static auto& leftBehind = *new std::vector<void*>; // for good, so that they are not taken for lost
     leftBehind.push_back(io.BackendRendererUserData);
     io.BackendRendererUserData = nullptr;
     io.BackendRendererName     = nullptr;
