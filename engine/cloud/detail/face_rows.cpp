@@ -28,7 +28,7 @@ void FaceRows::addCorner(double corner, CloudRows::Place place)
         if (place == CloudRows::Place::line) reader_.failAtLine(message);
         reader_.fail("before byte " + std::to_string(reader_.offset()) + ": " + message);
     }
-    if (faces_ == 0 && corners_.empty()) began_ = reader_.offset();
+    if (began_ == 0) began_ = reader_.offset();
     // With more corners than points one occurs twice, whatever the others are.
     if (corners_.size() <= points_) corners_.push_back(std::uint32_t(corner));
 }

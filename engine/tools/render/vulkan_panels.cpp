@@ -17,6 +17,13 @@ using compute::typed;
 
 constexpr std::uint32_t kFrames = 2; // the least that the back end takes; ours is one at a time
 
+/// Back ends that must not free what they have, kept so that they are not taken for lost.
+std::vector<void*>& leftBehind()
+{
+    static auto& all = *new std::vector<void*>;
+    return all;
+}
+
 } // namespace
 
 VulkanPanels::VulkanPanels(compute::VulkanContext& context, VkRenderPass pass) : context_(context)
@@ -31,6 +38,7 @@ VulkanPanels::VulkanPanels(compute::VulkanContext& context, VkRenderPass pass) :
     VkDescriptorPool pool  = VK_NULL_HANDLE;
     check(vkCreateDescriptorPool(context.device, &poolInfo, nullptr, &pool), "make a descriptor pool");
     sets_ = {context, pool};
+    leftBehind().reserve(leftBehind().size() + 1); // the destructor asks for no memory
     try {
         start(pass);
         uploadFont();
@@ -96,8 +104,7 @@ void VulkanPanels::stop()
     if (!context_.atWork() && !isBroken_) return ImGui_ImplVulkan_Shutdown();
     // A driver that never finished uses what would be freed, and a back end that failed may have freed it already: it is
     // left behind, and ImGui forgets it.
-    static auto& leftBehind = *new std::vector<void*>; // for good, so that they are not taken for lost
-    leftBehind.push_back(io.BackendRendererUserData);
+    leftBehind().push_back(io.BackendRendererUserData);
     io.BackendRendererUserData = nullptr;
     io.BackendRendererName     = nullptr;
 }

@@ -381,7 +381,7 @@ void VulkanSurface::record(const SurfaceInput& input)
 void VulkanSurface::recordPanels()
 {
 #ifdef PALPATE_PANELS
-    if (!std::exchange(freshPanels_, false) || panels_->isBroken()) return;
+    if (!std::exchange(freshPanels_, false)) return;
     const VkClearValue nothing[] = {{}};
     begin(panelStep_, nothing);
     panels_->record(commands_);

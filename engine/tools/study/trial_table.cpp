@@ -199,11 +199,11 @@ void appendNow(const std::filesystem::path& file, const std::string& bytes)
 {
     const int handle = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (handle < 0) throw Error(file.string() + ": cannot be written: " + std::strerror(errno));
-    const off_t   before  = ::lseek(handle, 0, SEEK_END);
-    const ssize_t written = ::write(handle, bytes.data(), bytes.size());
-    const bool    good    = written == ssize_t(bytes.size()) && ::fsync(handle) == 0;
-    const int     why     = errno;
-    if (!good && ::ftruncate(handle, before) != 0) errno = why; // the next run removes the cut line
+    const off_t                before  = ::lseek(handle, 0, SEEK_END);
+    const ssize_t              written = ::write(handle, bytes.data(), bytes.size());
+    const bool                 good    = written == ssize_t(bytes.size()) && ::fsync(handle) == 0;
+    const int                  why     = errno;
+    [[maybe_unused]] const int cut = good ? 0 : ::ftruncate(handle, before); // else the next run removes the cut line
     ::close(handle);
     if (!good)
         throw Error(file.string() + ": cannot be written: " +
