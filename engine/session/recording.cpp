@@ -273,10 +273,15 @@ struct Recording::Impl {
     {
         why = sentence;
         stopped.store(true, std::memory_order_release);
+        say(sentence);
+    }
+
+    void say(const std::string& sentence) const
+    {
         if (complain)
-            complain(*why);
+            complain(sentence);
         else
-            std::cerr << "palpate: " << *why << "\n";
+            std::cerr << "palpate: " << sentence << "\n";
     }
 
     RecordingReport finish()
@@ -290,6 +295,9 @@ struct Recording::Impl {
             const std::uint64_t rows = whole ? files.rows() : 0, marked = whole ? files.marked() : 0;
             report = {rows, pushed - rows, longestGap, why, marked, marksHeard - marked};
             if (there) describeEnd(); // else another recording may have the folder's name
+            if (!report.stopped && report.lost > 0)
+                say(folder.string() + ": " + std::to_string(report.lost) +
+                    " ticks were lost: its disk took them more slowly than they came");
         }
         return report;
     }
@@ -305,8 +313,9 @@ struct Recording::Impl {
         description["stopped"]       = report.stopped ? nlohmann::ordered_json(*report.stopped) : nullptr;
         try {
             writeDescription(folder, description);
-        } catch (const Error&) { // a full disk: the description from the start is still there, and states unfinished
-            if (!report.stopped) report.stopped = "session.json could not be completed";
+        } catch (const Error& error) { // a full disk: the description from the start is still there, states unfinished
+            if (!why) stop(std::string("the recording is whole but not marked as finished: ") + error.what());
+            report.stopped = why;
         }
     }
 

@@ -266,8 +266,9 @@ TEST(Recording, FilesAreWholeAtEveryMoment)
 
 TEST(Recording, EveryTickIsOnDiskOrCountedAsLost)
 {
-    const TemporaryFolder folder;
-    Recording             recording(folder / "run", someInfo());
+    const TemporaryFolder    folder;
+    std::vector<std::string> said;
+    Recording recording(folder / "run", someInfo(), [&](const std::string& sentence) { said.push_back(sentence); });
 
     constexpr int kFlood = 200'000; // far more than the ring takes at once
     for (int i = 0; i < kFlood; ++i) recording.push(recordNumber(i));
@@ -277,6 +278,8 @@ TEST(Recording, EveryTickIsOnDiskOrCountedAsLost)
     EXPECT_EQ(report.ticks + report.lost, std::uint64_t(kFlood));
     EXPECT_EQ(session.records.size(), report.ticks);
     EXPECT_GT(report.lost, 0u) << "or the test pushes too slowly";
+    ASSERT_EQ(said.size(), 1u) << "a program that fails for this says why";
+    EXPECT_TRUE(holds(said[0], {"run: " + std::to_string(report.lost) + " ticks were lost"})) << said[0];
     for (std::size_t k = 1; k < session.records.size(); ++k)
         ASSERT_GT(session.records[k].time, session.records[k - 1].time);
     EXPECT_EQ(recording.finish().ticks, report.ticks) << "a second end is the same end";
@@ -462,6 +465,20 @@ TEST(Recording, OneThatWasMovedAndBroughtBackIsWhole)
 
     EXPECT_EQ(disturbed.recording.finish().ticks, 100u);
     EXPECT_TRUE(disturbed.said.empty());
+}
+
+TEST(Recording, OneThatCannotBeMarkedAsFinishedSaysSo)
+{
+    Disturbed disturbed;
+    std::filesystem::remove(disturbed.folder / "run/session.json");
+    std::filesystem::create_directories(disturbed.folder / "run/session.json/in the way");
+
+    const RecordingReport report = disturbed.recording.finish();
+
+    EXPECT_EQ(report.ticks, 100u);
+    ASSERT_EQ(disturbed.said.size(), 1u);
+    EXPECT_TRUE(holds(disturbed.said[0], {"whole but not marked as finished", "session.json"})) << disturbed.said[0];
+    EXPECT_EQ(report.stopped, disturbed.said[0]);
 }
 
 /// Records until writing stops; then pushing must go on without effect, and one sentence must have been said.
