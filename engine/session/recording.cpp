@@ -314,7 +314,7 @@ struct Recording::Impl {
         try {
             writeDescription(folder, description);
         } catch (const Error& error) { // a full disk: the description from the start is still there, states unfinished
-            if (!why) stop(std::string("the recording is whole but not marked as finished: ") + error.what());
+            if (!why) stop(std::string("the recording could not be marked as finished: ") + error.what());
             report.stopped = why;
         }
     }

@@ -477,7 +477,7 @@ TEST(Recording, OneThatCannotBeMarkedAsFinishedSaysSo)
 
     EXPECT_EQ(report.ticks, 100u);
     ASSERT_EQ(disturbed.said.size(), 1u);
-    EXPECT_TRUE(holds(disturbed.said[0], {"whole but not marked as finished", "session.json"})) << disturbed.said[0];
+    EXPECT_TRUE(holds(disturbed.said[0], {"could not be marked as finished", "session.json"})) << disturbed.said[0];
     EXPECT_EQ(report.stopped, disturbed.said[0]);
 }
 
