@@ -29,6 +29,7 @@ public:
     glm::dvec3 step(FalconDevice& device, const HapticState& state, double gain, double dt) noexcept;
 
     [[nodiscard]] bool isDone() const noexcept { return isDone_; }
+    [[nodiscard]] bool fell() const noexcept { return isNear_; } ///< the grip, in one of the silences so far
 
     /// Returns the hold [s] once done; empty if the grip did not fall in 0.5 s, or not as a grip falls.
     [[nodiscard]] std::optional<double> hold() const noexcept;

@@ -1,8 +1,11 @@
 #include "engine/capi/detail/border.h"
 
 #include <exception>
+#include <filesystem>
 #include <new>
 #include <sstream>
+
+#include "engine/core/file.h"
 
 namespace palp::capi {
 namespace {
@@ -18,6 +21,15 @@ int keep(int code, const char* opening, const char* sentence) noexcept
         return PALPATE_NO_MEMORY;
     }
     return code;
+}
+
+int refused(const std::filesystem::filesystem_error& error) noexcept
+{
+    try {
+        return keep(PALPATE_REFUSED, "", sentenceOf(error).c_str());
+    } catch (...) {
+        return PALPATE_NO_MEMORY;
+    }
 }
 
 } // namespace
@@ -36,6 +48,8 @@ int failure() noexcept
         return PALPATE_NO_MEMORY;
     } catch (const Error& error) {
         return keep(PALPATE_REFUSED, "", error.what());
+    } catch (const std::filesystem::filesystem_error& error) {
+        return refused(error);
     } catch (const std::exception& error) {
         return keep(PALPATE_BROKEN, "a mistake of the library's own: ", error.what());
     } catch (...) {

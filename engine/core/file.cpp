@@ -243,6 +243,20 @@ InputFile openRegularFile(const std::filesystem::path& path)
     return openForReading(path);
 }
 
+bool isThere(const std::filesystem::path& path)
+{
+    std::error_code failure;
+    const bool      there = std::filesystem::exists(path, failure);
+    if (failure) throw Error(path.string() + ": cannot be read: " + failure.message());
+    return there;
+}
+
+std::string sentenceOf(const std::filesystem::filesystem_error& error)
+{
+    const std::string path = error.path1().string();
+    return (path.empty() ? "the current folder" : path) + ": cannot be read: " + error.code().message();
+}
+
 std::uint64_t sizeOfFile(const std::filesystem::path& path)
 {
     std::error_code     failure;

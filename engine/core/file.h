@@ -49,6 +49,13 @@ private:
 /// \throws Error naming the path if it is no regular file
 [[nodiscard]] std::uint64_t sizeOfFile(const std::filesystem::path& path);
 
+/// Returns whether there is a file or a folder of that name.
+/// \throws Error naming the path where the system cannot say, as on a server that does not answer: none is no answer then
+[[nodiscard]] bool isThere(const std::filesystem::path& path);
+
+/// Returns the sentence of an error of the file system that nobody expected: the path and the reason.
+[[nodiscard]] std::string sentenceOf(const std::filesystem::filesystem_error& error);
+
 /// What a pipe is where a file is expected: read to its end, or refused where nobody means one, as in the folder of a recording,
 /// because a pipe that nobody writes into is waited for without an end.
 enum class Pipes { read, refused };

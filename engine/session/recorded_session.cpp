@@ -12,6 +12,8 @@
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
+#include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 #include "engine/force/governor.h"
 #include "engine/session/scene_keys.h"
 #include "engine/session/tick_source.h"
@@ -20,6 +22,7 @@ namespace palp {
 namespace {
 
 constexpr std::size_t kMostOfDescription = std::size_t(4) << 20; // [bytes] of session.json
+constexpr std::size_t kMostOfReason      = 300;                  // [bytes] of a sentence in it
 
 /// Reads markers.jsonl, one object a line. What follows the last line's end was cut by a kill.
 std::vector<Marker> readMarkers(const std::filesystem::path& path)
@@ -58,6 +61,18 @@ std::optional<SessionClocks> clocksOf(const JsonObject& file)
     const auto realtime = nanoseconds("realtime_ns"), monotonic = nanoseconds("monotonic_ns");
     if (!realtime || !monotonic) return {};
     return SessionClocks{*realtime, *monotonic};
+}
+
+/// Returns what a recording lacks, as the end of a sentence; empty if it is whole.
+/// \param file  session.json
+std::string whyIncomplete(const JsonObject& file, bool finished)
+{
+    if (!finished) return "it has no end: its program was killed, or still records";
+    const auto count = [&](std::string_view key) { return file.has(key) ? file.number(key) : 0; };
+    if (file.has("stopped") && file.json("stopped") != "null") return shownText(file.text("stopped"), kMostOfReason);
+    if (count("lost") > 0) return formatNumber(count("lost")) + " ticks are missing in it";
+    if (count("markers_lost") > 0) return formatNumber(count("markers_lost")) + " markers are missing in it";
+    return {};
 }
 
 /// Returns the scene of a recording of format 1, whose keys had other names, with the names of today.
@@ -170,8 +185,9 @@ RecordedSession readDescription(const std::filesystem::path& folder)
     session.scene   = format == 1 ? withNamesOfToday(file.json("scene")) : file.json("scene");
     if (file.has("finished")) session.finished = file.json("finished") == "true";
     if (session.finished) session.counted = file.wholeNumber("samples", 0, std::numeric_limits<int>::max());
-    session.clocks = clocksOf(file);
-    session.cloud  = file.has("cloud") ? file.text("cloud") : "";
+    session.whyIncomplete = whyIncomplete(file, session.finished);
+    session.clocks        = clocksOf(file);
+    session.cloud         = file.has("cloud") ? file.text("cloud") : "";
     if (file.has("hand")) {
         const JsonObject hand         = file.object("hand");
         session.hand.model            = hand.text("model");

@@ -27,6 +27,7 @@ struct RecordedSession {
     std::string                  cloud;            ///< fingerprint() of what was touched
     HapticDeviceInfo             hand;             ///< its model and limits
     bool                         finished = false; ///< false: killed, or still running
+    std::string                  whyIncomplete;    ///< what is missing, as the end of a sentence; empty: nothing
     std::optional<std::uint64_t> counted;          ///< ticks that session.json counts, once it is finished
     std::vector<TickRecord>      records;
     std::uint64_t                columns = ~std::uint64_t(0); ///< that were recorded: bit k is sessionColumns()[k]

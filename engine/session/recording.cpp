@@ -117,6 +117,13 @@ public:
         marked_ += markers.size();
     }
 
+    /// \throws Error naming the file and the reason
+    void close()
+    {
+        ticks_.close();
+        markers_.close();
+    }
+
     [[nodiscard]] bool          areThere() const noexcept { return ticks_.isThere() && markers_.isThere(); }
     [[nodiscard]] bool          areCut() const noexcept { return ticks_.isCut() || markers_.isCut(); }
     [[nodiscard]] std::uint64_t rows() const noexcept { return rows_; }
@@ -292,6 +299,7 @@ struct Recording::Impl {
             const bool there = files.areThere(), whole = there && !files.areCut();
             if (!whole && !why)
                 stop(folder.string() + ": another program has removed, moved or cut the files of the recording");
+            close();
             const std::uint64_t rows = whole ? files.rows() : 0, marked = whole ? files.marked() : 0;
             report = {rows, pushed - rows, longestGap, why, marked, marksHeard - marked};
             if (there) describeEnd(); // else another recording may have the folder's name
@@ -300,6 +308,15 @@ struct Recording::Impl {
                     " ticks were lost: its disk took them more slowly than they came");
         }
         return report;
+    }
+
+    void close()
+    {
+        try {
+            files.close();
+        } catch (const Error& error) {
+            if (!why) stop(std::string("the end of the recording may be lost: ") + error.what());
+        }
     }
 
     void describeEnd()

@@ -96,7 +96,8 @@ void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene,
 /// Refuses a word that is neither a hand nor a file.
 void refuseUnknown(const std::string& word)
 {
-    if (std::filesystem::exists(word)) return;
+    std::error_code hidden; // reading it says why
+    if (std::filesystem::exists(word, hidden) || hidden) return;
     std::vector<std::string_view> known;
     std::string                   listed;
     const auto                    add = [&](std::string_view name, bool needsWindow) {

@@ -28,7 +28,14 @@ GrowingFile::GrowingFile(std::filesystem::path path)
 
 GrowingFile::~GrowingFile()
 {
-    ::close(handle_);
+    if (handle_ >= 0) ::close(handle_);
+}
+
+void GrowingFile::close()
+{
+    errno            = 0;
+    const bool isBad = ::close(std::exchange(handle_, -1)) != 0 && errno != EINTR; // EINTR: it is closed all the same
+    if (isBad) throw Error(path_.string() + ": cannot be written: " + reasonOfErrno());
 }
 
 void GrowingFile::write(std::string_view bytes, std::uint64_t at)

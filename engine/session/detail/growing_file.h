@@ -26,6 +26,10 @@ public:
     void accept() noexcept { whole_ += std::exchange(pending_, 0); }
     void undo() noexcept;
 
+    /// Closes the file: some file systems say only then that there was no room. Nothing is called after it.
+    /// \throws Error naming the file and the reason
+    void close();
+
     /// Returns false if another program has moved or removed the file; true where the system does not say.
     [[nodiscard]] bool isThere() const noexcept;
     /// Returns whether another program has cut the complete part.

@@ -126,7 +126,8 @@ struct Found {
     double                begun    = 0;        ///< [counts/(N m)] in use until then
     bool                  isBefore = false;    ///< every command ran with those
     double                counts = 0, arm = 0; ///< [counts/(N m)], [kg]
-    std::optional<double> hold{}; ///< [s] empty: it holds for longer than half a second, or was not measured
+    std::optional<double> hold{};      ///< [s] empty: see whyNoHold
+    std::string           whyNoHold{}; ///< "not found: ..." or "not measured: ..."
 };
 
 /// Goes through all stages with an open Falcon. However it ends, the device is closed, so its last force is zero.
@@ -173,7 +174,13 @@ Found weigh(const CalibrateOptions& o, double mass, Bench& bench)
         ill                            = state.fault == DeviceFault::none ? 0 : ill + dt;
         constexpr double kHoldPatience = 150; // [s] some 40 silences, each after 2 s
         const bool       isLost        = ill > 1 || out.fault != GovernorFault::none;
-        if (hold && (isLost || now > weighed + kHoldPatience)) break; // the weighing counts all the same
+        if (hold && (isLost || now > weighed + kHoldPatience)) { // the weighing counts all the same
+            found.whyNoHold = std::string("not measured: ") +
+                              (out.fault != GovernorFault::none ? name(out.fault)
+                               : isLost                         ? name(state.fault)
+                                                                : "it took longer than two and a half minutes");
+            break;
+        }
         demandWell(state, ill, out.fault);
         gain  = out.gain;
         force = governor.force();
@@ -187,6 +194,9 @@ Found weigh(const CalibrateOptions& o, double mass, Bench& bench)
     found.counts = calibration.countsPerTorque().value();
     found.arm    = calibration.armMass().value();
     if (hold) found.hold = hold->hold();
+    if (!found.hold && found.whyNoHold.empty())
+        found.whyNoHold = hold && hold->fell() ? "not found: the grip fell, but not as one that is let go of"
+                                               : "not found: the grip did not fall within half a second without a packet";
     return found;
 }
 
@@ -344,8 +354,8 @@ void print(const CalibrateOptions& o, const Found& found, const std::string& fil
             "they can end it\n",
             1000 * *found.hold);
     else
-        std::printf("its own hold     not found: the grip did not fall within half a second without a packet. Unplug "
-                    "its power, not its cable, to be sure of no force\n");
+        std::printf("its own hold     %s. Unplug its power, not its cable, to be sure of no force\n",
+                    found.whyNoHold.c_str());
     printUse(o, found, file);
 }
 

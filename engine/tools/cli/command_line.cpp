@@ -3,11 +3,22 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <iostream>
 
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 
 namespace palp {
+
+void warn(const std::vector<std::string>& sentences)
+{
+    for (const std::string& sentence : sentences) std::cerr << "palpate: warning: " << sentence << "\n";
+}
+
+void say(const std::vector<std::string>& sentences)
+{
+    for (const std::string& sentence : sentences) std::cerr << "palpate: " << sentence << "\n";
+}
 
 void demandSvg(const std::string& option, const std::string& file)
 {

@@ -2,6 +2,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -35,6 +36,12 @@ void addBenchCommand(CLI::App& app);
 struct CheckFailed : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
+
+/// Writes warnings to standard error.
+void warn(const std::vector<std::string>& sentences);
+
+/// Writes sentences to standard error that warn of nothing.
+void say(const std::vector<std::string>& sentences);
 
 /// Refuses other files, so that no slip writes a picture over a scene, a hand or a table.
 /// \param option  opens the complaint

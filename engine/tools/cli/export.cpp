@@ -27,9 +27,14 @@ void exportTable(const ExportOptions& o)
     std::uint64_t         ticks   = 0;
     writeFileWhole(o.csv, [&](std::ostream& file) { ticks = writeTable(session, file); });
     if (o.json)
-        std::cout << jsonText(nlohmann::json{{"file", o.csv}, {"ticks", ticks}, {"finished", session.finished}});
+        std::cout << jsonText(nlohmann::json{
+            {"file", o.csv},
+            {"ticks", ticks},
+            {"finished", session.finished},
+            {"incomplete", session.whyIncomplete.empty() ? nlohmann::json() : nlohmann::json(session.whyIncomplete)}});
     else
-        std::cout << ticks << " ticks in " << o.csv << (session.finished ? "\n" : "; the session is not complete\n");
+        std::cout << ticks << " ticks in " << o.csv << "\n";
+    if (!session.whyIncomplete.empty()) warn({o.folder + " is not complete: " + session.whyIncomplete});
 }
 
 } // namespace

@@ -221,14 +221,17 @@ void fitMap(const FitOptions& o)
                        {"measured", "N/m", felt}, {"felt", "N/m", found.felt}, {"residual", "", found.residual}},
                    {CloudEncoding::binaryLittleEndian, loaded.faces});
     }
+    std::vector<std::string> undrawn;
     if (!o.page.empty()) {
         FigureRenderer renderer;
         writePage(o.page, fit::mapPage(loaded.cloud, found, o.source.title(), renderer));
+        undrawn = renderer.warnings();
     }
-    const auto odd = doubts(loaded.cloud, found);
+    auto odd = doubts(loaded.cloud, found);
+    odd.insert(odd.end(), undrawn.begin(), undrawn.end());
     if (!o.json) {
         printMap(o, loaded.cloud, found, solver.name());
-        for (const std::string& sentence : odd) std::cerr << "palpate: warning: " << sentence << "\n";
+        warn(odd);
         return;
     }
     const auto [soft, hard] = std::ranges::minmax(found.object.cloud().stiffness());

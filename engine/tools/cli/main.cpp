@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <filesystem>
 #include <functional>
 #include <iostream>
 #include <memory>
@@ -23,6 +24,7 @@
 #include "engine/compute/context.h"
 #include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
+#include "engine/core/file.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/shown_text.h"
 #include "engine/tools/cli/commands.h"
@@ -262,7 +264,7 @@ int runProgram(int argumentCount, char** arguments)
         if (error.get_exit_code() == 0) return printHelp(app, error); // or --version
         return complain(std::string(error.what()) + "; see --help", kBadInput);
     } catch (const palp::CheckFailed&) {
-        return kCheckFailed;
+        return printed() ? kCheckFailed : complain(kUnprinted, kBadInput);
     } catch (const palp::compute::ProcessorError& error) {
         return complain(error.what(), kNoGpu);
     } catch (const palp::compute::ProcessorLost& error) {
@@ -277,6 +279,8 @@ int runProgram(int argumentCount, char** arguments)
             return complain(
                 "the system starts no more threads for this user; end other programs, or raise the limit (ulimit -u)",
                 kBadInput);
+        if (const auto* const file = dynamic_cast<const std::filesystem::filesystem_error*>(&error))
+            return complain(palp::sentenceOf(*file), kBadInput);
         return complain(std::string("internal error, please report it: ") + error.what(), kOurFault);
     }
     return 0;

@@ -130,6 +130,7 @@ void paper(const PaperOptions& o)
         if (part.letter == 'b' && !o.bunny.empty()) addBunny(sections.back(), o.bunny, run);
         if (part.letter == 'i' && !o.bunny.empty()) addCurvedBunny(sections.back(), o.bunny, run);
     }
+    warn(renderer.warnings());
     const Origins               origins{PALPATE_VERSION, PALPATE_COMMIT, PALPATE_LIBRARIES, machine(), solver.name(),
                           o.command,       o.quick};
     const std::filesystem::path folder  = o.out;

@@ -11,13 +11,13 @@
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/perception/scene_perception.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/paper/perception_figures.h"
-#include "engine/perception/scene_perception.h"
 #include "engine/tools/paper/section.h"
 
 // palpate perceive: predicts what a person would notice of an object's stiffness.
@@ -40,8 +40,7 @@ struct Felt {
         : scene(o.scene.load()), loaded(o.scene.loadObject(scene)), object(loaded.object),
           solver(openSolver(scene.solver))
     {
-        for (const std::string& sentence : cloudWarnings(scene, object.cloud(), loaded.report))
-            std::cerr << "palpate: warning: " << sentence << "\n";
+        warn(cloudWarnings(scene, object.cloud(), loaded.report));
     }
     Scene             scene;
     LoadedObject      loaded;
@@ -156,6 +155,7 @@ void perceive(const PerceiveOptions& o)
     if (map)
         write(o.picture, mapSvg(felt.object.cloud(), *map, kTypicalWeber, line.middle.outward,
                                 "What is noticed if 15 % is the smallest change: " + o.scene.title(), renderer));
+    warn(renderer.warnings());
     if (o.json)
         std::cout << jsonText(jsonOf(o, felt, found, map));
     else

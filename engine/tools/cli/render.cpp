@@ -152,8 +152,7 @@ Written still(const RenderOptions& o, Stage& stage)
     Written written          = write(stage, cameraFor(o, stage, patch), o.out);
     written.force            = force;
     written.deepest          = deepestOf(patch, load);
-    for (const std::string& sentence : warnings(patch, stage.scene.patch, force, stage.scene.material))
-        std::cerr << "palpate: warning: " << sentence << "\n";
+    warn(warnings(patch, stage.scene.patch, force, stage.scene.material));
     return written;
 }
 
@@ -261,8 +260,7 @@ void render(const RenderOptions& o)
     if (o.frames && !o.force.empty())
         throw Error("--force: with --frames the hand decides how hard it presses; omit one of the two");
     Stage stage(o);
-    for (const std::string& sentence : cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report))
-        std::cerr << "palpate: warning: " << sentence << "\n";
+    warn(cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report));
     tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
 }
 

@@ -57,9 +57,9 @@ void replay(const ReplayOptions& o)
     Scene scene  = sceneOf(session, &study::huntKeys());
     scene.solver = o.solver.empty() ? session.solver : o.solver;
     if (session.records.empty()) throw Error(o.folder + ": it has no ticks, so there is nothing to replay");
-    if (!session.finished)
-        warn({o.folder + " is not complete: its first " + std::to_string(session.records.size()) +
-              " ticks are replayed"});
+    if (!session.whyIncomplete.empty())
+        warn({o.folder + " is not complete: " + session.whyIncomplete + "; the " +
+              std::to_string(session.records.size()) + " ticks that it has are replayed"});
     const SoftObject object = loadObject(scene).object;
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         warn({"the cloud is not the recorded one: " + scene.cloud + " has changed"});

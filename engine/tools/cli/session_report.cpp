@@ -27,6 +27,19 @@ std::string onComingOn(const SessionSummary& s)
                                  : "all of it was never felt: take more --seconds");
 }
 
+std::string onGovernor(const SessionSummary& s)
+{
+    return std::string("the governor stopped the force: ") + name(s.fault);
+}
+
+std::string onDevice(const SessionSummary& s)
+{
+    const char* const what =
+        isFinal(s.deviceFault) ? "the device was lost, which ended the session: " : "the device reported a fault: ";
+    return what + std::string(name(s.deviceFault)) + ": " +
+           (s.deviceWords.empty() ? std::string(meaningOf(s.deviceFault)) : s.deviceWords);
+}
+
 } // namespace
 
 nlohmann::json jsonOf(const SessionSummary& s)
@@ -86,7 +99,8 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     std::vector<std::string> said;
     const auto               say = [&](std::string sentence) { said.push_back(std::move(sentence)); };
     if (s.contactTicks == 0)
-        say("the hand never touched: it must start outside of the object, on the side that it presses, and reach it in the "
+        say("the hand never touched: it must start outside of the object, on the side that it presses, and reach it in "
+            "the "
             "time that it has");
     const bool solvedNone = s.patches == 0 && s.failedPatches > 0;
     if (s.contactTicks > 0 && s.mostForce == 0 && s.fault == GovernorFault::none)
@@ -94,12 +108,8 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
             (solvedNone        ? "none of " + std::to_string(s.failedPatches) + " patches could be solved: " + s.why
              : s.forceless > 0 ? s.whyForceless()
                                : "it stayed on the surface and never pressed"));
-    if (s.fault != GovernorFault::none) say(std::string("the governor stopped the force: ") + name(s.fault));
-    const std::string words = ": " + (s.deviceWords.empty() ? std::string(meaningOf(s.deviceFault)) : s.deviceWords);
-    if (isFinal(s.deviceFault))
-        say(std::string("the device was lost, which ended the session: ") + name(s.deviceFault) + words);
-    else if (s.deviceFault != DeviceFault::none)
-        say(std::string("the device reported a fault: ") + name(s.deviceFault) + words);
+    if (s.fault != GovernorFault::none) say(onGovernor(s));
+    if (s.deviceFault != DeviceFault::none) say(onDevice(s));
     if (s.beyondTheory > 0)
         say("the deflection exceeded half the thickness, or twice it with large deflections, in " +
             std::to_string(s.beyondTheory) + " ticks: the theory of the sheet does not hold there");
@@ -115,6 +125,12 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     if (s.failedPatches > 0 && !solvedNone)
         say(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
     return said;
+}
+
+std::string whyStopped(const SessionSummary& s)
+{
+    if (s.fault != GovernorFault::none) return onGovernor(s);
+    return isFinal(s.deviceFault) ? onDevice(s) : "";
 }
 
 } // namespace palp

@@ -19,4 +19,7 @@ void printText(const SessionSummary& summary, const std::string& solver, const s
 /// Returns, in sentences, what was not as it should be; empty if nothing was.
 [[nodiscard]] std::vector<std::string> warningsOf(const SessionSummary& summary);
 
+/// Returns why the force was stopped for good, in a sentence; empty if it was not.
+[[nodiscard]] std::string whyStopped(const SessionSummary& summary);
+
 } // namespace palp

@@ -46,9 +46,10 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
 }
 
 /// Runs a session in real time, with a line that shows what the hand feels.
-/// \param clutch  see RealSessionSettings; may be null
+/// \param clutch   see RealSessionSettings; may be null
+/// \param unheard  gets SessionRun::unheard
 SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, SessionTap& tap,
-                        const OnTick& also, const std::atomic<bool>* clutch)
+                        const OnTick& also, const std::atomic<bool>* clutch, std::uint64_t& unheard)
 {
     const bool           line = isatty(STDERR_FILENO) != 0 && !o.json;
     TickRing<TickRecord> ring(also ? 4096 : 1); // four seconds; from the servo to this thread
@@ -66,7 +67,7 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     settings.onStart = [&](std::chrono::steady_clock::time_point start) { tap.begin(start); };
     settings.onTick  = [&, heard = bool(also)](const TickRecord& record) {
         tap.push(record);
-        if (heard) static_cast<void>(ring.push(record)); // a reader that stops for four seconds has a gap
+        if (heard && !ring.push(record)) ++unheard;
     };
     settings.onView = [&, heard = bool(also)](const SessionView& view) {
         if (heard) drain();
@@ -157,21 +158,17 @@ std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionPar
     return std::make_unique<Recording>(o.record, info);
 }
 
+std::string onUnheard(const SessionRun& run)
+{
+    return std::to_string(run.unheard) +
+           " ticks were not counted in, because this program was kept from reading them for four seconds";
+}
+
 } // namespace
 
 UdpAddress markerAddress(const std::string& text)
 {
     return parseUdpAddress(text, "--markers", "127.0.0.1"); // nobody else's, unless the user says so
-}
-
-void warn(const std::vector<std::string>& sentences)
-{
-    for (const std::string& sentence : sentences) std::cerr << "palpate: warning: " << sentence << "\n";
-}
-
-void say(const std::vector<std::string>& sentences)
-{
-    for (const std::string& sentence : sentences) std::cerr << "palpate: " << sentence << "\n";
 }
 
 SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTick& also, const std::atomic<bool>* stop)
@@ -217,7 +214,9 @@ void printText(const SessionRun& run)
         if (run.recorded->markers > 0) std::cout << ", " << counted(run.recorded->markers, "marker");
         std::cout << "\n";
         if (run.recorded->markersLost > 0)
-            std::cout << "  " << counted(run.recorded->markersLost, "marker") << " lost: they came too fast\n";
+            std::cout << "  " << counted(run.recorded->markersLost, "marker")
+                      << (run.recorded->stopped ? " lost: the recording had stopped\n"
+                                                : " lost: they came too fast or were too many\n");
     }
     for (const StreamReport& stream : run.streams)
         std::cout << "  " << stream.sent << " ticks sent to " << stream.to << ", " << stream.dropped << " dropped\n";
@@ -225,8 +224,8 @@ void printText(const SessionRun& run)
 
 void demandWhole(const SessionRun& run)
 {
-    if (run.summary.fault != GovernorFault::none || isFinal(run.summary.deviceFault))
-        throw CheckFailed("the force was stopped");
+    if (const std::string why = whyStopped(run.summary); !why.empty()) throw CheckFailed(why);
+    if (run.unheard > 0) throw CheckFailed(onUnheard(run));
     if (run.recorded && run.recorded->lost > 0)
         throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " ticks were lost");
     if (run.recorded && run.recorded->stopped) throw CheckFailed(run.folder + ": " + *run.recorded->stopped);
@@ -267,6 +266,10 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
     if (!o.blind) say(run.notes);
+    if (o.blind && !o.handIsKnown) { // nothing of the object
+        warn(hand.warnings);
+        say(hand.notes);
+    }
     std::vector<TickStream*> outlets;
     for (const auto& stream : streams) outlets.push_back(stream.get());
     SessionTap   tap(recording.get(), std::move(outlets));
@@ -276,15 +279,16 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     };
     if (markers) markers->listen([&tap](std::string_view text) { tap.mark(text); });
     if (markers && markers->hearsKeys()) sayKeys(o, hasClutch);
-    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick, &isClutched)
+    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick, &isClutched, run.unheard)
                                               : playVirtual(parts, hand.seconds, each, &stop);
     markers.reset();
     if (recording) run.recorded = recording->finish();
     for (const auto& stream : streams) run.streams.push_back(stream->finish());
-    run.solver       = deformation.plateSolver().name();
-    run.hand         = hand.device->info().model;
-    run.interrupted  = stop;
-    const auto after = warningsOf(run.summary);
+    run.solver      = deformation.plateSolver().name();
+    run.hand        = hand.device->info().model;
+    run.interrupted = stop;
+    auto after      = warningsOf(run.summary);
+    if (run.unheard > 0) after.push_back(onUnheard(run));
     if (!o.blind) warn(after);
     run.warnings.insert(run.warnings.end(), after.begin(), after.end());
     return run;

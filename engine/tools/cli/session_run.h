@@ -19,12 +19,13 @@ namespace palp {
 struct SessionOptions {
     HandOptions              hand;
     std::string              clock = name(SessionClock::real), threads = name(SessionThreads::servo);
-    std::string              record;        ///< a new folder; empty: nothing is recorded
-    std::vector<std::string> streams{};     ///< outlets that get each tick, see openOutlet()
-    std::string              markers{};     ///< an address where markers are awaited; empty: none
-    std::string              command;       ///< the command line, quoted for a shell
-    bool                     json  = false; ///< prints JSON, and so no live line
-    bool                     blind = false; ///< tells nothing about what is touched: neither warnings nor numbers
+    std::string              record;              ///< a new folder; empty: nothing is recorded
+    std::vector<std::string> streams{};           ///< outlets that get each tick, see openOutlet()
+    std::string              markers{};           ///< an address where markers are awaited; empty: none
+    std::string              command;             ///< the command line, quoted for a shell
+    bool                     json        = false; ///< prints JSON, and so no live line
+    bool                     blind       = false; ///< tells nothing about what is touched: neither warnings nor numbers
+    bool                     handIsKnown = false; ///< with blind: what there is to say of the hand was said before
 };
 
 /// Adds --hand and its options, --clock and --threads.
@@ -58,6 +59,7 @@ struct SessionRun {
     std::optional<RecordingReport> recorded;
     std::string                    folder; ///< of the recording
     std::vector<StreamReport>      streams{};
+    std::uint64_t                  unheard     = 0;     ///< ticks that onTick did not get: it was four seconds late
     bool                           interrupted = false; ///< by the user
 };
 
@@ -72,17 +74,11 @@ struct SessionRun {
 SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTick& also,
                            const std::atomic<bool>* stop = nullptr);
 
-/// Prints sentences on standard error.
-void warn(const std::vector<std::string>& sentences);
-
-/// Writes sentences to standard error that warn of nothing.
-void say(const std::vector<std::string>& sentences);
-
 [[nodiscard]] nlohmann::json jsonOf(const SessionRun& run);
 void                         printText(const SessionRun& run);
 
 /// Checks that the session and its recording are whole.
-/// \throws CheckFailed if the force was stopped, or records are missing in the recording
+/// \throws CheckFailed if the force was stopped, or records are missing in the recording or in what onTick got
 void demandWhole(const SessionRun& run);
 
 } // namespace palp

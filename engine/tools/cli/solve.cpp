@@ -67,7 +67,7 @@ Solved solved(const SolveOptions& options)
         s.problem.warnings.push_back("the solution misses --tolerance: its error is about " +
                                      formatNumber(*report.errorEstimate) +
                                      " or more, relative; try fewer cells, less contrast or --solver reference");
-    for (const std::string& warning : s.problem.warnings) std::cerr << "palpate: warning: " << warning << "\n";
+    warn(s.problem.warnings);
     // With one plate and one load, the time of the answer includes the preparation.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
 

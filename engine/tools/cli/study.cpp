@@ -47,6 +47,7 @@ void study_(const StudyOptions& o, bool handGiven)
                                              {"trials", went.trials},
                                              {"done", went.done},
                                              {"paused", went.paused},
+                                             {"warnings", went.warnings},
                                              {"table", went.table.string()}});
     else
         std::cout << went.done << " of " << went.trials << " trials in " << went.table.string() << "\n";

@@ -38,7 +38,7 @@ std::vector<std::filesystem::path> participantsIn(const std::filesystem::path& f
     std::vector<std::filesystem::path> found;
     if (std::filesystem::exists(folder / "trials.csv", failure)) return {folder};
     for (const auto& entry : std::filesystem::directory_iterator(folder, failure))
-        if (std::filesystem::exists(entry.path() / "trials.csv")) found.push_back(entry.path());
+        if (isThere(entry.path() / "trials.csv")) found.push_back(entry.path());
     if (failure) throw Error(folder.string() + ": cannot be read: " + failure.message());
     if (found.empty())
         throw Error(folder.string() +

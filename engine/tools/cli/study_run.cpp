@@ -8,6 +8,8 @@
 #include <functional>
 #include <iostream>
 #include <map>
+#include <set>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <poll.h>
@@ -125,21 +127,27 @@ public:
             paused = true;
             say("\nPaused after " + std::to_string(table_->rows().size()) + " of " + std::to_string(trials_.size()) +
                 " trials; run the same command to resume.\n");
+        } catch (const CheckFailed&) { // a force was stopped, which was said
+            tellUnfelt();
+            warn(warnings());
+            throw;
         }
         tellUnfelt();
-        return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv"};
+        warn(warnings());
+        return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv", warnings()};
     }
 
 private:
-    void                      agree();
-    void                      demandOurs() const;
-    void                      tellUnfelt() const;
-    TrialRow                  trial(std::size_t number);
-    std::string               touch(std::size_t condition, const std::string& name, ForceTally& force);
-    [[nodiscard]] std::string ask(const Task& task) const;
-    [[nodiscard]] std::string line() const;
-    [[nodiscard]] std::string answerAmong(const Answers& known, const std::string& wanted) const;
-    void                      begin(const std::string& what) const;
+    void                                   agree();
+    void                                   demandOurs() const;
+    void                                   tellUnfelt() const;
+    [[nodiscard]] std::vector<std::string> warnings() const;
+    TrialRow                               trial(std::size_t number);
+    std::string                            touch(std::size_t condition, const std::string& name, ForceTally& force);
+    [[nodiscard]] std::string              ask(const Task& task) const;
+    [[nodiscard]] std::string              line() const;
+    [[nodiscard]] std::string              answerAmong(const Answers& known, const std::string& wanted) const;
+    void                                   begin(const std::string& what) const;
     void say(const std::string& text) const { (run_.json ? std::cerr : std::cout) << text << std::flush; }
 
     const StudyRun&                  run_;
@@ -149,6 +157,9 @@ private:
     std::vector<Felt>                felt_;
     std::optional<FolderLock>        lock_;
     std::optional<study::TrialTable> table_;
+    bool                             handIsKnown_ = false; ///< what there is to say of it was said
+    /// Numbers of trials, by what their sessions warned of: participants must not read it, which says what they touch.
+    std::map<std::string, std::set<std::size_t>> warned_;
 };
 
 /// Returns the hand without the port of its device, which may change from day to day.
@@ -164,8 +175,9 @@ std::vector<std::filesystem::path> othersIn(const std::filesystem::path& study)
     std::error_code                    failure;
     for (std::filesystem::directory_iterator entry(study, failure), end; !failure && entry != end;
          entry.increment(failure))
-        if (std::error_code ignored; std::filesystem::exists(entry->path() / study::kStudyFile, ignored))
-            found.push_back(entry->path());
+        if (isThere(entry->path() / study::kStudyFile)) found.push_back(entry->path());
+    if (failure && failure != std::errc::no_such_file_or_directory)
+        throw Error(study.string() + ": cannot be read: " + failure.message());
     return found;
 }
 
@@ -180,8 +192,7 @@ void Sitting::agree()
                                     .clock       = run_.session.clock,
                                     .version     = PALPATE_VERSION " " PALPATE_COMMIT};
     for (const Felt& felt : felt_) now.clouds.push_back(fingerprint(felt.loaded.object.cloud()));
-    std::error_code ignored;
-    if (std::filesystem::exists(path, ignored)) {
+    if (isThere(path)) {
         const study::StudyFile before = study::readStudyFile(folder_);
         if (before.participant != now.participant || before.plan != now.plan || before.clouds != now.clouds)
             throw Error(path.string() + ": expected the plan that this participant began with, found that " +
@@ -231,6 +242,17 @@ void Sitting::tellUnfelt() const
             std::cerr << "palpate: trial " << row.trial
                       << ": nothing was felt: the hand never touched or had no force; "
                       << "its answer is not valid\n";
+}
+
+std::vector<std::string> Sitting::warnings() const
+{
+    std::vector<std::string> all;
+    for (const auto& [sentence, trials] : warned_) {
+        std::string which;
+        for (const std::size_t trial : trials) which += (which.empty() ? "" : ", ") + std::to_string(trial);
+        all.push_back((trials.size() > 1 ? "trials " : "trial ") + which + ": " + sentence);
+    }
+    return all;
 }
 
 std::string Sitting::line() const
@@ -295,8 +317,10 @@ std::string Sitting::touch(std::size_t condition, const std::string& name, Force
     SessionOptions options   = run_.session;
     options.record           = (folder_ / fresh).string();
     options.blind            = true;
+    options.handIsKnown      = std::exchange(handIsKnown_, true);
     const SessionRun session = runSession(plan_.conditions[condition].scene, felt_[condition].loaded, options,
                                           [&](const TickRecord& record) { force.add(record); });
+    for (const std::string& sentence : session.warnings) warned_[sentence].insert(table_->rows().size() + 1);
     if (session.interrupted) throw Paused();
     if (!session.takeover.empty()) std::cerr << "palpate: " << session.takeover << "\n";
     try {

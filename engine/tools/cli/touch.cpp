@@ -158,9 +158,9 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
 
 /// Writes the touch's pictures and returns the names of their files, in reading order.
 std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
-                                       const PatchSettings& settings, double force, double load)
+                                       const PatchSettings& settings, double force, double load,
+                                       FigureRenderer& renderer)
 {
-    FigureRenderer     renderer;
     const std::string  newtons   = formatQuantity(force, "N");
     const double       deepest   = load * mostResponse(patch);
     const PressedPatch pressed[] = {{&patch, load, newtons}};
@@ -187,7 +187,7 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
 
 /// Writes the deformed cloud, the grids and the pictures.
 std::vector<std::string> writeFiles(const TouchOptions& options, const PointCloud& cloud, const Patch& patch,
-                                    const PatchSettings& settings, double force, double load)
+                                    const PatchSettings& settings, double force, double load, FigureRenderer& renderer)
 {
     const std::filesystem::path folder = options.out;
     makeFolder(folder);
@@ -207,7 +207,7 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
     writeNpy(folder / "rigidity.npy", patch.plate.rigidity);
 
     std::vector<std::string> files = {"deformed.ply", "deflection.npy", "rigidity.npy"};
-    for (std::string& picture : writePictures(folder, cloud, patch, settings, force, load))
+    for (std::string& picture : writePictures(folder, cloud, patch, settings, force, load, renderer))
         files.push_back(std::move(picture));
     return files;
 }
@@ -269,9 +269,11 @@ void touch(const TouchOptions& options)
     if (std::string doubt = placeDoubt(scene, patch); !doubt.empty()) report["warnings"].push_back(std::move(doubt));
     report["preset"] = name(scene.preset);
     if (!options.out.empty()) {
-        std::vector<std::string> files =
-            writeFiles(options, object.cloud(), patch, settings, force, pressOf(patch, scene.material, force).load);
+        FigureRenderer           renderer;
+        const double             load  = pressOf(patch, scene.material, force).load;
+        std::vector<std::string> files = writeFiles(options, object.cloud(), patch, settings, force, load, renderer);
         files.emplace_back(kSummary);
+        for (const std::string& warning : renderer.warnings()) report["warnings"].push_back(warning);
         report["files"] = files;
         writeFileWhole(std::filesystem::path(options.out) / kSummary,
                        [&](std::ostream& file) { file << jsonText(report); });

@@ -134,7 +134,7 @@ std::vector<std::string> offeredObjects()
 /// Returns the scorer of a scene in which something is hidden; empty for any other, and for recorded sessions.
 std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
 {
-    if (std::filesystem::is_directory(source.name)) return {};
+    if (std::error_code hidden; std::filesystem::is_directory(source.name, hidden)) return {};
     const Scene scene = source.load();
     if (!study::hiddenIn(scene)) return {};
     return std::make_optional<study::HuntScorer>(scene, source.loadCloud(scene).cloud);

@@ -13,7 +13,7 @@ void ObjectSource::request(const SceneValues& values)
 
 std::function<OpenedObject()> ObjectSource::opener(const std::string& what, const SceneValues& values) const
 {
-    if (!std::filesystem::is_directory(what))
+    if (std::error_code hidden; !std::filesystem::is_directory(what, hidden)) // reading says why
         return [what, values, &open = settings_.open] {
             Scene scene = open(what, values);
             auto  stage = std::make_unique<Stage>(scene);

@@ -134,6 +134,12 @@ glm::dvec3 obliquely(const glm::dvec3& normal)
 
 } // namespace
 
+void FigureRenderer::couldNotDraw(const std::string& why)
+{
+    const std::string warning = "a picture could not be drawn and says so in its place: " + why;
+    if (std::ranges::find(warnings_, warning) == warnings_.end()) warnings_.push_back(warning);
+}
+
 std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
                            std::span<const double> values, const CloudFigure& figure, FigureRenderer& renderer)
 {
@@ -147,6 +153,7 @@ std::string cloudFigureSvg(std::span<const glm::dvec3> rest, std::span<const glm
         svg.image(corner, size, imageOf(rest, now, values, figure, camera, renderer));
         drawScaleBar(svg, 0.5 * size.y / camera.halfHeight(), corner + size - glm::dvec2(14, 14));
     } catch (const Error& error) {
+        renderer.couldNotDraw(error.what());
         const std::string sentence = std::string("this picture could not be drawn: ") + error.what();
         svg.text({corner.x, 48}, sentence);
         return svg.finish({2 * corner.x + textWidth(sentence, 12), 64}, figure.title);

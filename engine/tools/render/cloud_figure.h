@@ -2,6 +2,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "engine/tools/plot/axis.h"
 #include "engine/tools/plot/patch_pictures.h"
@@ -34,8 +35,14 @@ public:
     /// \throws compute::ProcessorError if no device can draw
     [[nodiscard]] SurfaceRenderer& opened() { return renderer_ ? *renderer_ : renderer_.emplace(); }
 
+    /// Notes why a figure is a sentence in place of a picture; each reason once.
+    void couldNotDraw(const std::string& why);
+    /// Returns warnings for who asked for the figures.
+    [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
+
 private:
     std::optional<SurfaceRenderer> renderer_;
+    std::vector<std::string>       warnings_;
 };
 
 /// Draws a cloud as a lit, closed surface in the colours of a value per point, by parallel projection: a self-contained
@@ -43,7 +50,7 @@ private:
 ///
 /// Points without a value (NaN) are grey and counted. Without a Vulkan processor that can draw, and for a cloud that
 /// has no surface (see CloudSkin), the figure is a sentence that says so, because a command's other output is still
-/// useful.
+/// useful; the renderer keeps a warning.
 /// \param rest    positions at rest, from which neighbours are found [m]
 /// \param now     as many positions, which are drawn [m]
 /// \param values  as many [figure.unit]

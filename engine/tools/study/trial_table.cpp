@@ -199,15 +199,18 @@ void appendNow(const std::filesystem::path& file, const std::string& bytes)
 {
     const int handle = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
     if (handle < 0) throw Error(file.string() + ": cannot be written: " + std::strerror(errno));
-    const off_t                before  = ::lseek(handle, 0, SEEK_END);
-    const ssize_t              written = ::write(handle, bytes.data(), bytes.size());
-    const bool                 good    = written == ssize_t(bytes.size()) && ::fsync(handle) == 0;
-    const int                  why     = errno;
+    const off_t before = ::lseek(handle, 0, SEEK_END);
+    bool        good   = before >= 0;
+    for (std::string_view rest = bytes; good && !rest.empty();) {
+        const ssize_t written = ::write(handle, rest.data(), rest.size());
+        good                  = written > 0 || (written < 0 && errno == EINTR);
+        rest.remove_prefix(std::size_t(std::max(written, ssize_t(0))));
+    }
+    good                           = good && ::fsync(handle) == 0;
+    const int                  why = errno;
     [[maybe_unused]] const int cut = good ? 0 : ::ftruncate(handle, before); // else the next run removes the cut line
-    ::close(handle);
-    if (!good)
-        throw Error(file.string() + ": cannot be written: " +
-                    (written >= 0 && written < ssize_t(bytes.size()) ? "the disk is full" : std::strerror(why)));
+    ::close(handle); // what is synchronized has no fault left to say
+    if (!good) throw Error(file.string() + ": cannot be written: " + std::strerror(why));
 }
 
 } // namespace
@@ -219,12 +222,11 @@ std::vector<TrialRow> readTrials(const std::filesystem::path& file)
 
 TrialTable::TrialTable(std::filesystem::path file) : file_(std::move(file))
 {
-    std::error_code ignored;
-    std::string     text = std::filesystem::exists(file_, ignored) ? wholeLines(file_) : "";
+    const bool  there = isThere(file_); // an empty table is never written over one that a server hides for a moment
+    std::string text  = there ? wholeLines(file_) : "";
     if (text.empty()) text = header();
     rows_ = rowsOf(text, file_);
-    if (!std::filesystem::exists(file_, ignored) || sizeOfFile(file_) != text.size())
-        writeFileWhole(file_, [&](std::ostream& out) { out << text; });
+    if (!there || sizeOfFile(file_) != text.size()) writeFileWhole(file_, [&](std::ostream& out) { out << text; });
 }
 
 void TrialTable::append(const TrialRow& row)
