@@ -359,7 +359,7 @@ class Object:
 
     @classmethod
     def scene(cls, scene: Union[str, dict], folder: Union[str, os.PathLike] = ".") -> "Object":
-        """Makes the object of a scene: a dict or JSON with a key "cloud".
+        """Makes the object of a scene without a hunt: a dict or JSON with a key "cloud".
 
         >>> len(palpate.Object.scene({"cloud": "sample:sheet", "points": 2000}))
         2000
@@ -372,7 +372,7 @@ class Object:
 
     @classmethod
     def file(cls, path: Union[str, os.PathLike]) -> "Object":
-        """Makes the object of a scene file."""
+        """Makes the object of a scene file without a hunt."""
         made = cls.__new__(cls)
         made._handle = _void()
         _check(_lib.palpate_object_from_file(_bytes(path, "path"), ctypes.byref(made._handle)))
