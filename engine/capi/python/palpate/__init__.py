@@ -418,8 +418,8 @@ class Object:
     def touch(self, at: ArrayLike, force: Optional[float] = None, side: Optional[ArrayLike] = None) -> Touch:
         """Touches the object at the foot of a place on the surface.
 
-        at: the place, (3,) [m], at most a quarter of the patch window from a point. force: [N]; if given, the answer has
-        every point under it. side: (3,) from where the finger comes; None: away from the middle of the object.
+        at: the place, (3,) [m], at most a quarter of the patch window from a point. force: [N]; if given, the answer
+        has every point under it. side: (3,) from where the finger comes; None: away from the middle of the object.
         """
         place, direction = _doubles(at, "at", 3), _three(side, "side")
         newtons = None if force is None else _number(force, "force")
