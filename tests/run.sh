@@ -10,7 +10,7 @@ usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- 
        sh tests/run.sh --driver ICD.json
        sh tests/run.sh --all [--driver ICD.json] [--release PROGRAM] [--resume]
 
-  (nothing)      every test, Release build in build/
+  (nothing)      every test but the slow GPU-assisted validation of shaders, Release build in build/
   --asan         the same tests under AddressSanitizer and UndefinedBehaviorSanitizer, in build/asan; those that run the
                  same code again are left out: the pages' commands, validation of shaders
   --tsan         the same under ThreadSanitizer, in build/tsan, without the long ones that start no thread
@@ -27,7 +27,8 @@ usage: sh tests/run.sh [--asan | --tsan] [--yes] [--no-install] [--dry-run] [-- 
   --no-install   install nothing; exit 3 naming what is missing
   --dry-run      print the steps without running them
 
-  sh tests/run.sh -- -R plate        only the tests whose name contains "plate"
+  sh tests/run.sh -- -R plate        only the tests whose name contains "plate". With options of ctest the GPU-assisted
+                                     ones run too; -LE shader-gpu-assisted leaves them out
   PALPATE_BUILD=/tmp/b sh tests/run.sh   builds elsewhere, for a checkout that cannot be written
 TEXT
 }

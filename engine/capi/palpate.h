@@ -115,13 +115,15 @@ typedef struct palpate_points {
     size_t          foundation_stride; /**< bytes; 0: side by side */
 } palpate_points;
 
-/** Makes an object of points. scene: the keys of samples/scenes/README.md but those of files and samples, as JSON; NULL:
-   all defaults. Points with faces that are too far apart for the fingertip are replaced by points on the faces, unless
-   the scene's key "scatter" is "off": palpate_object_size() tells. */
+/** Makes an object of points. scene: the keys of samples/scenes/README.md as JSON, but those of files and samples, and
+   "hunt" and "hunt_seed", which only the program palpate reads; NULL: all defaults. Points with faces that are too far
+   apart for the fingertip are replaced by points on the faces, unless the scene's key "scatter" is "off":
+   palpate_object_size() tells. */
 PALPATE_API int palpate_object_from_points(const palpate_points* points, const char* scene, palpate_object** out);
-/** Makes the object of a scene with a cloud. folder: where relative paths start; NULL: the current one. */
+/** Makes the object of a scene with a cloud and without a hunt. folder: where relative paths start; NULL: the current
+   one. */
 PALPATE_API int palpate_object_from_scene(const char* scene, const char* folder, palpate_object** out);
-/** Makes the object of a scene file. */
+/** Makes the object of a scene file without a hunt. */
 PALPATE_API int palpate_object_from_file(const char* path, palpate_object** out);
 /** NULL is allowed, here and in the other destroy functions. Sessions keep what they need of the object. */
 PALPATE_API void palpate_object_destroy(palpate_object* object);

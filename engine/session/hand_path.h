@@ -95,8 +95,8 @@ struct HandPlace {
 /// Returns Scene::place, or the point of the cloud nearest to a viewer who looks along -z: that of the largest z.
 [[nodiscard]] glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud);
 
-/// Returns where the scene is touched: the cloud's point nearest to placeOf(), and the side Scene::from; where the
-/// scene names no place, the viewer's side.
+/// Returns where the scene is touched: the foot of placeOf() on the surface, see touchAt(), and the side Scene::from;
+/// where the scene names no place, the viewer's side.
 /// \throws Error if the place is farther than a quarter of the patch window from the cloud
 [[nodiscard]] Contact contactOf(const Scene& scene, const SoftObject& object);
 

@@ -313,9 +313,9 @@ std::vector<SceneKey> materialKeys()
     std::vector<SceneKey> keys = {
         wordKey(
             {.name  = "preset",
-             .help  = "sets map, neighbourhood, resampling, edges, foundation and force_law: palpate, or paper as "
-                      "Kumari and Chaudhuri published it, a flat plate without stiffening and relaxation; keys beside "
-                      "it win over it",
+             .help  = "sets map, neighbourhood, resampling, edges and force_law: palpate, or paper as Kumari and "
+                      "Chaudhuri published it, which also sets theory to plate, large to off, foundation and "
+                      "stiffening to 0 and relaxation to none; keys beside it win over it",
              .group = kTouch},
             [](auto& s) -> auto& { return s.preset; }),
         textKey(
@@ -402,10 +402,10 @@ SceneKey windowKey(const Control& control)
     SceneKey key = numberKey(
         {.name  = "window",
          .help  = "edge of the patch window, the square of surface that bends with the finger; or object: all of the "
-                  "object bends, free at its borders and held where the key held says so; or auto, which shells have: "
-                  "8 lengths over which dents of this object die away, more where it is curved unequally both ways, 10 "
-                  "or 12 where a foundation ends them, and where "
-                  "nothing does the width without auto; palpate touch says which",
+                  "object bends, free at its borders and held where the key held says so; or auto, the default of "
+                  "shells: 8 times the length over which a dent of this object dies away, more where it is curved "
+                  "unequally both ways, and 10 or 12 times where a foundation ends the dents; where nothing ends them, "
+                  "at most the width without auto, which is that of the sample or 40 mm; palpate touch says which",
          .group = kTouch,
          .unit  = "m",
          .form  = "object, auto, or a length from 1e-6 to 100 m, such as 70 mm",

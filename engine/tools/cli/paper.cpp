@@ -180,7 +180,7 @@ void addPaperCommand(CLI::App& app)
         "  a  the same force at several places of the ellipsoid   e  what Jacobi's iteration does\n"
         "  b  the dip in a thin lobe, clamped and free            f  three equal-area maps on one cap\n"
         "  c  time of a deformation, with its errors              g  felt stiffness over a wart\n"
-        "  d  1000 random maps of rigidity, all edges             h  what a person would notice, predicted\n"
+        "  d  1000 random maps; sides clamped, supported or free  h  what a person would notice, predicted\n"
         "                                                         i  what it costs to bend what is curved as a plate\n"
         "Examples:\n"
         "  palpate paper --out report\n"

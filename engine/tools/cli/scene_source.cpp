@@ -155,13 +155,16 @@ std::string SceneSource::title() const
 
 std::vector<std::string> unusedVariables()
 {
-    constexpr std::string_view    kPrefix = "PALPATE_", kHostIsa = "PALPATE_HOST_ISA"; // which hostVariant() reads
+    constexpr std::string_view    kPrefix  = "PALPATE_";
+    constexpr std::string_view    kHostIsa = "PALPATE_HOST_ISA"; // which hostVariant() reads
+    constexpr std::string_view    kHaply   = "PALPATE_HAPLY";    // which the driver of the Haply reads
     std::vector<std::string_view> known;
     for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) known.push_back(key->name);
     std::vector<std::string> said;
     for (char** entry = environ; *entry; ++entry) {
         const std::string_view text(*entry), name = text.substr(0, text.find('='));
-        if (!name.starts_with(kPrefix) || name == kHostIsa || text.size() <= name.size() + 1) continue;
+        if (!name.starts_with(kPrefix) || name == kHostIsa || name == kHaply || text.size() <= name.size() + 1)
+            continue;
         std::string key;
         for (const char c : name.substr(kPrefix.size())) key += c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
         if (std::ranges::find(known, key) != known.end() && variableOf(key) == name) continue;

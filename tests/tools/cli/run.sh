@@ -921,13 +921,14 @@ JSON
     good 'what touch does with a hunt' touch hidden.json --json
     holds 'has hidden 1 nodule in this stiffness; palpate hunt and palpate view score'
     unused() { # unused COMMAND...: it tells of variables that nothing reads, one of each kind, and of no others
-        env PALPATE_CELS=8 PALPATE_HAND_OVER=hold PALPATE_ODD=1 PALPATE_EMPTY= PALPATE_CELLS=32 PALPATE_HOST_ISA=portable "$palpate" "$@" >out.txt 2>err.txt ||
+        env PALPATE_CELS=8 PALPATE_HAND_OVER=hold PALPATE_ODD=1 PALPATE_EMPTY= PALPATE_CELLS=32 \
+            PALPATE_HOST_ISA=portable PALPATE_HAPLY=localhost:10001 "$palpate" "$@" >out.txt 2>err.txt ||
             complain "unused variables, $1: exit $? $(cat err.txt)"
         cat err.txt >>out.txt
         holds "environment's PALPATE_CELS is not used; did you mean PALPATE_CELLS?"
         holds "environment's PALPATE_HAND_OVER is not used; the key is compliance_law now: PALPATE_COMPLIANCE_LAW"
         holds "environment's PALPATE_ODD is not used; palpate info --keys lists the keys"
-        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
+        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA|HAPLY) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
     }
     unused info scan.json
     unused convert scan.json unused.ply

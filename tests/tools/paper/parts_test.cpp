@@ -89,7 +89,7 @@ TEST(Cantilever, IsTheTextbooksForOneRigidity)
 TEST(StabilityPart, NothingDivergesAndEveryAnswerIsRight)
 {
     const Section section = stabilityPart(Quick().run);
-    EXPECT_EQ(section.number("plates").front(), 81) << "every combination of edges once";
+    EXPECT_EQ(section.number("plates").front(), 81) << "every combination of clamped, supported and free sides once";
     EXPECT_EQ(section.number("not_finite").front(), 0);
     EXPECT_EQ(section.number("not_converged").front(), 0);
     EXPECT_LT(section.number("largest_error").front(), 1e-3)

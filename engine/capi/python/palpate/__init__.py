@@ -359,7 +359,7 @@ class Object:
 
     @classmethod
     def scene(cls, scene: Union[str, dict], folder: Union[str, os.PathLike] = ".") -> "Object":
-        """Makes the object of a scene: a dict or JSON with a key "cloud".
+        """Makes the object of a scene without a hunt: a dict or JSON with a key "cloud".
 
         >>> len(palpate.Object.scene({"cloud": "sample:sheet", "points": 2000}))
         2000
@@ -372,7 +372,7 @@ class Object:
 
     @classmethod
     def file(cls, path: Union[str, os.PathLike]) -> "Object":
-        """Makes the object of a scene file."""
+        """Makes the object of a scene file without a hunt."""
         made = cls.__new__(cls)
         made._handle = _void()
         _check(_lib.palpate_object_from_file(_bytes(path, "path"), ctypes.byref(made._handle)))
@@ -416,10 +416,10 @@ class Object:
         return json.loads(text.value)
 
     def touch(self, at: ArrayLike, force: Optional[float] = None, side: Optional[ArrayLike] = None) -> Touch:
-        """Touches the object at a place, (3,) [m]: its nearest point within a quarter of the patch window.
+        """Touches the object at the foot of a place on the surface.
 
-        force: [N]; if given, the answer has every point under it. side: (3,) from where the finger comes; None: away from
-        the middle of the object.
+        at: the place, (3,) [m], at most a quarter of the patch window from a point. force: [N]; if given, the answer
+        has every point under it. side: (3,) from where the finger comes; None: away from the middle of the object.
         """
         place, direction = _doubles(at, "at", 3), _three(side, "side")
         newtons = None if force is None else _number(force, "force")
