@@ -59,7 +59,7 @@ done
 say
 say '== the paper, computed again: one to two minutes on two cores'
 "$build/bin/palpate" paper --out "$out/paper" || exit 1
-cat >"$out/index.html" <<HTML
+cat >"$out/index.html" <<HTML || exit 1
 <!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><title>Palpate: what the demo made</title>
 <style>body{font:16px/1.5 sans-serif;margin:2em auto;max-width:64em;padding:0 1em;color:#1a1a1a}figure{display:inline-block;width:calc(50% - 1em);margin:.5em 0}

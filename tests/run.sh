@@ -73,7 +73,8 @@ run_on_driver() (
     # listed no processor any more, and all later tests failed.
     for program in "$1"/bin/palp_*_shader_test; do
         say "== $(basename "$program")"
-        for test in $("$program" --gtest_list_tests | awk '/^[^ ]/ { suite = $1 } /^ / { print suite $1 }'); do
+        tests=$("$program" --gtest_list_tests) || failures=$((failures + 1))
+        for test in $(printf '%s\n' "$tests" | awk '/^[^ ]/ { suite = $1 } /^ / { print suite $1 }'); do
             if ! "$program" --gtest_brief=1 --gtest_filter="$test" >"$log" 2>&1; then
                 cat "$log"
                 failures=$((failures + 1))

@@ -33,6 +33,15 @@ LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings
     return parseCloud(file, size, path.string(), format, settings);
 }
 
+std::vector<NamedField> fieldsBeside(const LoadedCloud& loaded, std::span<const double> stiffening)
+{
+    std::vector<NamedField> fields;
+    if (!loaded.foundation.empty()) fields.push_back({"foundation", "Pa/m", loaded.foundation});
+    if (!loaded.held.empty()) fields.push_back({"held", "1", loaded.held});
+    if (!stiffening.empty()) fields.push_back({"stiffening", "1/m", stiffening});
+    return fields;
+}
+
 void formatCloud(std::ostream& stream, CloudFormat format, const PointCloud& cloud,
                  std::span<const NamedField> extraFields, const CloudWriteSettings& settings)
 {

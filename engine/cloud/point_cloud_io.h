@@ -131,6 +131,10 @@ struct NamedField {
     std::span<const double> values; ///< one per point, in `unit`
 };
 
+/// Returns what a file says of a cloud's points beside their stiffness, to be written again.
+/// \param stiffening  in place of the file's [1/m]; it and `loaded` outlive the fields
+[[nodiscard]] std::vector<NamedField> fieldsBeside(const LoadedCloud& loaded, std::span<const double> stiffening);
+
 struct CloudWriteSettings {
     CloudEncoding             encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD
     std::span<const Triangle> faces{};         ///< of the cloud's points; formats without a place for them omit them

@@ -70,8 +70,8 @@ std::string whyIncomplete(const JsonObject& file, bool finished)
     if (!finished) return "it has no end: its program was killed, or still records";
     const auto count = [&](std::string_view key) { return file.has(key) ? file.number(key) : 0; };
     if (file.has("stopped") && file.json("stopped") != "null") return shownText(file.text("stopped"), kMostOfReason);
-    if (count("lost") > 0) return formatNumber(count("lost")) + " ticks are missing in it";
-    if (count("markers_lost") > 0) return formatNumber(count("markers_lost")) + " markers are missing in it";
+    if (count("lost") > 0) return shortNumber(count("lost")) + " ticks are missing in it";
+    if (count("markers_lost") > 0) return shortNumber(count("markers_lost")) + " markers are missing in it";
     return {};
 }
 

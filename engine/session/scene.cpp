@@ -210,7 +210,7 @@ void readCloudKey(Scene& scene, const Statement& said, const std::filesystem::pa
     try {
         static_cast<void>(openRegularFile(path));
     } catch (const Error& error) {
-        throw Error(said.what + ": expected " + expected + ", found one that is not there: " + error.what() +
+        throw Error(said.what + ": expected " + expected + ", found one that cannot be opened: " + error.what() +
                     (inScene && named.is_relative() ? "; paths start at the scene's folder" : ""));
     }
     scene.cloud = path.lexically_normal().string();

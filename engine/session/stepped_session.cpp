@@ -97,6 +97,9 @@ const Patch* SteppedSession::patch() const noexcept
 
 void SteppedSession::record(const std::filesystem::path& folder, const std::string& program)
 {
+    if (impl_->recording)
+        throw Error(folder.string() + ": expected a session that is not recorded, found one that is; end that recording "
+                                      "first");
     const bool  nameless = impl_->scene.cloud.empty();
     SessionInfo info{.scene    = impl_->scene,
                      .versions = {{"palpate", program}},

@@ -2,6 +2,7 @@
 
 import copy
 import doctest
+import os
 import pickle
 import shutil
 import sys
@@ -226,6 +227,10 @@ class Sessions(unittest.TestCase):
             wrong = session.step(now + 1, [0, float("nan"), 0])
             self.assertTrue(wrong.bad_input and not wrong.force.any())
             self.assertTrue(any(points is not None and points[:, 2].min() < -1e-4 for points in seen))
+            with self.assertRaises(palpate.Error) as caught:
+                session.record(SCRATCH / "second")
+            self.assertIn("end that recording first", str(caught.exception))
+            self.assertFalse((SCRATCH / "second").exists())
             ticks, lost = session.stop_recording()
             for wrong in (("now", [0, 0, 0]), (4, [0, 0]), (4, None), (4, ["a", 0, 0])):
                 with self.assertRaises(palpate.Error):
@@ -239,6 +244,19 @@ class Sessions(unittest.TestCase):
         self.assertEqual((len(table), lost), (ticks, 0))
         self.assertGreater(table["force"][-2][2], 0.2)
         self.assertIn("scene", about)
+
+    def test_a_recording_that_was_cut_is_said(self):
+        folder = SCRATCH / "cut"
+        with self.assertRaises(palpate.Error) as caught:
+            with palpate.Object(*sheet(), **SCENE).session() as session:
+                session.record(folder)
+                session.step(0, [0, 0, 0.01])
+                time.sleep(0.1)  # its writer looks each 2 ms
+                with self.assertWarns(RuntimeWarning) as warned:
+                    palpate.read_recording(folder)
+                self.assertIn("still records", str(warned.warning))
+                os.truncate(folder / "ticks.npy", 0)
+        self.assertIn("cut", str(caught.exception))
 
 
 if __name__ == "__main__":

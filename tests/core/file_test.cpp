@@ -365,5 +365,16 @@ TEST_F(Files, AFolderIsNotMadeWhereAFileIs)
     EXPECT_EQ(contentsOf(folder_ / "a"), "new");
 }
 
+TEST(IsThere, ThrowsWhereTheSystemCannotSay)
+{
+    const TemporaryFolder folder;
+    static_cast<void>(folder.write("file", "x"));
+    EXPECT_TRUE(isThere(folder / "file"));
+    EXPECT_FALSE(isThere(folder / "other"));
+    EXPECT_FALSE(isThere(folder / "file" / "below"));
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(isThere(folder / std::string(300, 'a'))); }),
+                      {"aaa: cannot be read: File name too long"}));
+}
+
 } // namespace
 } // namespace palp

@@ -1,5 +1,6 @@
 // Calls on files that fail, for whole programs: loaded before the C library (LD_PRELOAD), it counts what changes files and
-// folders (new ones, writes to regular files, syncs, lengths, names; not what is removed, which a full disk lets go) and fails
+// folders (new ones, writes to regular files, syncs, lengths, names, the closing of what was open for writing; not what is
+// removed, which a full disk lets go) and fails
 //
 //     FAILING_FILES_AT=n        the n-th such call, counted from 1, and all later ones: a disk that is full
 //     FAILING_FILES_ONCE=n      the n-th alone: a disk that has an error
@@ -109,6 +110,17 @@ ssize_t pwrite64(int handle, const void* bytes, size_t count, off64_t at)
 {
     static const auto real = next<ssize_t(int, const void*, size_t, off64_t)>("pwrite64");
     return isFile(handle) && fails() ? -1 : real(handle, bytes, count, at);
+}
+
+int close(int handle)
+{
+    static const auto real  = next<int(int)>("close");
+    const bool        isBad = isFile(handle) && (::fcntl(handle, F_GETFL) & O_ACCMODE) != O_RDONLY && fails();
+    const int         why   = errno;
+    const int         code  = real(handle); // it is closed all the same
+    if (!isBad) return code;
+    errno = why;
+    return -1;
 }
 
 ssize_t read(int handle, void* bytes, size_t count)

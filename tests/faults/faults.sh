@@ -102,6 +102,7 @@ attempt() {
 
 # every LIMIT WHERE: all commands under it.
 every() {
+    rm -f counts
     commands | while read -r name output arguments; do
         arguments=$(printf '%s' "$arguments" | sed "s|WHERE|$2|g; s|;| |g")
         [ "$name" != paint ] || arguments=$(printf '%s' "$arguments" | sed 's|--stroke \(.*\) --out|--stroke "\1" --out|')
@@ -110,11 +111,12 @@ every() {
         [ -d "$2/$output" ] && rm -rf "${2:?}/$output"
         echo "$passed $failed" >counts
     done
-    read -r passed failed <counts
+    read -r passed failed <counts || complain 'no command was tried'
 }
 
 mkdir limited whole
 every_good() { # what each command writes without a fault
+    rm -f counts
     commands | while read -r name output arguments; do
         arguments=$(printf '%s' "$arguments" | sed "s|WHERE|limited|g; s|;| |g")
         [ "$name" != paint ] || arguments=$(printf '%s' "$arguments" | sed 's|--stroke \(.*\) --out|--stroke "\1" --out|')
@@ -123,7 +125,7 @@ every_good() { # what each command writes without a fault
         [ ! -e "limited/$output" ] || mv "limited/$output" "whole/$name"
         echo "$passed $failed" >counts
     done
-    read -r passed failed <counts
+    read -r passed failed <counts || complain 'no command was tried'
 }
 every_good
 for blocks in 1 64; do every "ulimit -f $blocks" limited; done # of 512 bytes; with 0 nothing could be said into a file
@@ -135,6 +137,7 @@ every_call() {
     reads=$1
     # shellcheck disable=SC2034 # by eval
     preload="export LD_PRELOAD='$failing_files'${reads:+ FAILING_FILES_READ='$reads'}"
+    rm -f counts
     commands | while read -r name output arguments; do
         arguments=$(printf '%s' "$arguments" | sed "s|WHERE|limited|g; s|;| |g")
         [ "$name" != paint ] || arguments=$(printf '%s' "$arguments" | sed 's|--stroke \(.*\) --out|--stroke "\1" --out|')
@@ -151,7 +154,7 @@ every_call() {
         rm -rf "limited/${output:?}"
         echo "$passed $failed" >counts
     done
-    read -r passed failed <counts
+    read -r passed failed <counts || complain 'no command was tried'
 }
 if [ -z "$sanitizers" ]; then
     every_call ''

@@ -237,6 +237,22 @@ TEST_F(SessionFolder, TheDeviceThatWasHeldComesBack)
     EXPECT_EQ(sceneOf(session, &none).toolKeys, &none);
 }
 
+TEST_F(SessionFolder, WhatItLacksIsSaid)
+{
+    const std::string whole = contentsOf(run / "session.json");
+    const auto        lacks = [&](const std::string& was, const std::string& is) {
+        std::string text = whole;
+        text.replace(text.find(was), was.size(), is);
+        put("session.json", text);
+        return readDescription(run).whyIncomplete;
+    };
+    EXPECT_EQ(readDescription(run).whyIncomplete, "");
+    EXPECT_TRUE(holds(lacks("\"finished\": true", "\"finished\": false"), {"it has no end"}));
+    EXPECT_EQ(lacks("\"stopped\": null", "\"stopped\": \"the disk\\u001b[31m was full\""), "the disk?[31m was full");
+    EXPECT_EQ(lacks("\"lost\": 0", "\"lost\": 12"), "12 ticks are missing in it");
+    EXPECT_EQ(lacks("\"markers_lost\": 0", "\"markers_lost\": 2"), "2 markers are missing in it");
+}
+
 TEST_F(SessionFolder, OneClockAloneIsNoMomentOfTimeZero)
 {
     const std::string json = contentsOf(run / "session.json");

@@ -1,11 +1,15 @@
 #include "engine/tools/bench/one_thread.h"
 
 #include <algorithm>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 
 #include <unistd.h>
+
+#include "engine/core/contract.h"
 
 namespace palp::bench {
 
@@ -49,6 +53,8 @@ void becomeOneThread(const std::filesystem::path& program)
     for (std::string& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
     execv(program.c_str(), arguments.data());
+    throw Error(program.string() + ": cannot be started: " + std::strerror(errno) +
+                "; with the libraries' threads nothing would be compared");
 }
 
 } // namespace palp::bench

@@ -69,11 +69,8 @@ bool keepsOriginal(const PaintOptions& o, const Canvas& canvas, const Painted& p
 RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const Painted& painted)
 {
     if (keepsOriginal(o, canvas, painted)) return repaintPly(canvas.file, canvas.scene.reading, painted.cloud, o.out);
-    std::vector<NamedField> fields;
-    if (!canvas.loaded.foundation.empty()) fields.push_back({"foundation", "Pa/m", canvas.loaded.foundation});
-    if (!canvas.loaded.held.empty()) fields.push_back({"held", "1", canvas.loaded.held});
-    if (!painted.stiffening.empty()) fields.push_back({"stiffening", "1/m", painted.stiffening});
-    writeCloud(o.out, painted.cloud, fields, {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
+    writeCloud(o.out, painted.cloud, fieldsBeside(canvas.loaded, painted.stiffening),
+               {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
     return {propertyOf(painted.cloud.kind()), true};
 }
 

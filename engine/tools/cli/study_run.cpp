@@ -129,11 +129,11 @@ public:
                 " trials; run the same command to resume.\n");
         } catch (const CheckFailed&) { // a force was stopped, which was said
             tellUnfelt();
-            warn(warnings());
+            keepWarnings();
             throw;
         }
         tellUnfelt();
-        warn(warnings());
+        keepWarnings();
         return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv", warnings()};
     }
 
@@ -142,6 +142,7 @@ private:
     void                                   demandOurs() const;
     void                                   tellUnfelt() const;
     [[nodiscard]] std::vector<std::string> warnings() const;
+    void                                   keepWarnings() const;
     TrialRow                               trial(std::size_t number);
     std::string                            touch(std::size_t condition, const std::string& name, ForceTally& force);
     [[nodiscard]] std::string              ask(const Task& task) const;
@@ -253,6 +254,21 @@ std::vector<std::string> Sitting::warnings() const
         all.push_back((trials.size() > 1 ? "trials " : "trial ") + which + ": " + sentence);
     }
     return all;
+}
+
+/// Adds to a file what the participant must not read: it says what is touched.
+void Sitting::keepWarnings() const
+{
+    constexpr std::size_t kMost = std::size_t(16) << 20; // [bytes]
+    if (warned_.empty()) return;
+    const std::filesystem::path path = folder_ / "warnings.txt";
+    const std::string before = isThere(path) ? readWhole(path, kMost, "the warnings of a participant's trials") : "";
+    writeFileWhole(path, [&](std::ostream& file) {
+        file << before;
+        for (const std::string& line : warnings()) file << line << "\n";
+    });
+    std::cerr << "palpate: warning: who runs the study should read " << path.string()
+              << ", which the participant should not\n";
 }
 
 std::string Sitting::line() const

@@ -117,7 +117,9 @@ std::unique_ptr<SpaceMouse> capFor(const ViewOptions& o, HidSystem& system)
                 cap->open();
                 return cap;
             }
-    } catch (const Error&) { // the SpaceMouse is optional
+    } catch (const HidRefused& error) { // it is optional, but there
+        warn({std::string("the SpaceMouse does not move the camera: ") + error.what()});
+    } catch (const Error&) { // nothing can be listed
     }
     return nullptr;
 }
@@ -195,6 +197,7 @@ void tellEnd(const ViewOptions& o, const WorkbenchReport& report, SurfaceRendere
     const auto messages = renderer.takeMessages();
     for (const std::string& message : messages) std::cerr << "palpate: validation: " << message << "\n";
     if (!messages.empty()) throw CheckFailed("the validation layer has messages");
+    if (report.hasLost) throw CheckFailed("paint or ticks were lost");
 }
 
 /// Shows what the options name until its window is closed.
@@ -250,7 +253,7 @@ void view(const ViewOptions& o)
         if (window.hasDisplay()) throw;
         throw Error(std::string("the display has gone, and the window with it (") + error.what() + ")");
     }
-    if (!window.hasDisplay()) throw Error("the display has gone, and the window with it; what was recorded is whole");
+    if (!window.hasDisplay()) throw Error("the display has gone, and the window with it");
 }
 
 #else

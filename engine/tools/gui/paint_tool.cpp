@@ -1,5 +1,6 @@
 #include "engine/tools/gui/paint_tool.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -9,6 +10,20 @@
 #include "engine/tools/gui/numbered_file.h"
 
 namespace palp {
+namespace {
+
+/// Reads again what the object's file says beside the stiffness; empty where it does not have the object's points any more.
+std::optional<LoadedCloud> asOpened(const Stage& stage)
+{
+    try {
+        LoadedCloud again = loadCloud(stage.scene());
+        if (std::ranges::equal(again.cloud.positions(), stage.object().positions())) return again;
+    } catch (const Error&) { // it is gone
+    }
+    return {};
+}
+
+} // namespace
 
 void PaintTool::startAnew()
 {
@@ -54,26 +69,35 @@ void PaintTool::redo(Stage& stage)
     stage.paint([](StiffnessPainting& painting) { painting.redo(); });
 }
 
-void PaintTool::save(const Stage& stage)
+bool PaintTool::save(const Stage& stage, const std::filesystem::path& folder)
 {
-    if (!stage.painting().changed()) return notices_.say("nothing is painted; B takes the brush");
+    if (!stage.painting().changed()) {
+        notices_.say("nothing is painted; B takes the brush");
+        return true;
+    }
     try {
         const std::string           cloud = stage.scene().cloud;
         const std::filesystem::path source(cloud);
         const bool isPly = !cloud.starts_with("sample:") && formatToRead(source).format == CloudFormat::ply &&
                            stage.report().scatteredPoints == 0;
         const std::string stem     = cloud.starts_with("sample:") ? cloud.substr(7) : source.stem().string();
-        const auto        target   = unusedPath(stem + "-painted", ".ply");
+        const auto        target   = unusedPath((folder / (stem + "-painted")).string(), ".ply");
         std::string       property = "stiffness";
         if (isPly) {
             property = repaintPly(source, stage.scene().reading, stage.painted().cloud(), target).property;
+        } else if (const auto file = asOpened(stage)) {
+            writeCloud(target, stage.painted().cloud(), fieldsBeside(*file, file->stiffening), {.faces = file->faces});
         } else {
-            writeCloud(target, stage.painted().cloud(), {}, {});
+            writeCloud(target, stage.painted().cloud());
+            notices_.complain(cloud + " has changed or gone: the painted file has its points, and no faces or other "
+                                      "properties");
         }
         kept_ = Kept::saved;
         notices_.say("saved " + target.string() + ", property " + property);
+        return true;
     } catch (const Error& error) {
         notices_.complain(error.what());
+        return false;
     }
 }
 

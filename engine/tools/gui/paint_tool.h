@@ -29,7 +29,9 @@ public:
     void redo(Stage& stage);
 
     /// Writes the painted cloud as a new PLY file, and shows its name or why it could not be written.
-    void               save(const Stage& stage);
+    /// \param folder  empty: the current one
+    /// \return whether nothing is unsaved now
+    bool               save(const Stage& stage, const std::filesystem::path& folder = {});
     [[nodiscard]] bool unsaved(const Stage& stage) const;
     /// Returns true if the paint is saved or the user has asked twice; warns the first time.
     [[nodiscard]] bool mayDiscard(const Stage& stage);

@@ -12,7 +12,10 @@ void SessionRecorder::begin(const std::function<SessionInfo()>& info)
     if (!std::exchange(requested_, false)) return;
     try {
         folder_    = unusedPath("session", "").string();
-        recording_ = std::make_unique<Recording>(folder_, info(), [](const std::string&) {});
+        recording_ = std::make_unique<Recording>(folder_, info(), [this](const std::string& fault) {
+            fault_.draft() = fault;
+            fault_.publish();
+        });
         notices_.say("recording " + folder_);
     } catch (const Error& error) {
         notices_.complain(error.what());
@@ -22,13 +25,17 @@ void SessionRecorder::begin(const std::function<SessionInfo()>& info)
 void SessionRecorder::end()
 {
     if (!recording_) return;
-    const RecordingReport report = recording_->finish();
+    static_cast<void>(recording_->finish()); // what it lacks is a fault
     recording_.reset();
     lastFolder_ = folder_;
-    if (report.stopped)
-        notices_.complain(*report.stopped);
-    else if (report.lost > 0)
-        notices_.complain(folder_ + ": " + std::to_string(report.lost) + " ticks were lost");
+    tell();
+}
+
+void SessionRecorder::tell()
+{
+    if (!fault_.take()) return;
+    hasLost_ = true;
+    notices_.complain(*fault_.held());
 }
 
 } // namespace palp

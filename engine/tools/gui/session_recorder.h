@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/core/latest.h"
 #include "engine/session/recording.h"
 #include "engine/tools/gui/notices.h"
 
@@ -23,19 +24,23 @@ public:
     /// Starts the requested recording; shows its folder, or why it could not start.
     /// \pre no session runs
     void begin(const std::function<SessionInfo()>& info);
-    /// Ends the recording, if there is one, and shows a fault if records were lost.
+    /// Ends the recording, if there is one, and shows a fault if it lacks something.
     /// \pre no session runs
     void end();
+    /// Shows why the recording has stopped, also while its session goes on.
+    void tell();
 
     /// Returns null while nothing is recorded. Only the servo's thread may push while a session runs.
     [[nodiscard]] Recording*         recording() const noexcept { return recording_.get(); }
     [[nodiscard]] const std::string& folder() const noexcept { return folder_; } ///< of the newest recording, or empty
     /// Returns an empty text until a recording has ended.
     [[nodiscard]] const std::string& lastFolder() const noexcept { return lastFolder_; }
+    [[nodiscard]] bool hasLost() const noexcept { return hasLost_; } ///< a recording of this window lacks something
 
 private:
     Notices&                   notices_;
-    bool                       requested_ = false;
+    bool                       requested_ = false, hasLost_ = false;
+    Latest<std::string>        fault_; ///< from the recording's thread, or from end() once that has ended
     std::unique_ptr<Recording> recording_;
     std::string                folder_, lastFolder_;
 };

@@ -175,6 +175,7 @@ void TouchSession::collect(const OnTick& onTick)
 {
     unsolved_.take();
     takeover_.take();
+    recorder_.tell();
     for (auto records = ring_.front(); !records.empty(); records = ring_.front()) {
         for (const TickRecord& record : records) {
             history_.add(record);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -45,23 +47,40 @@ WorkbenchReport Workbench::run(const Poll& poll, PanelFrame* panels)
     panels_  = PanelLayer(panels);
     started_ = Clock::now();
     controls_.setPanels(panels_.exist());
-    openFirst();
-    while (!closing_) {
-        session_.rearm();
-        takeRequests();
-        if (session_.halted())
-            frame(nullptr);
-        else
-            touch();
+    try {
+        openFirst();
+        while (!closing_) {
+            session_.rearm();
+            takeRequests();
+            if (session_.halted())
+                frame(nullptr);
+            else
+                touch();
+        }
+    } catch (...) { // the display or what draws on it has gone
+        if (keepPaint() && settings_.complained) settings_.complained(notices_.message());
+        throw;
     }
     session_.endRecording();
     WorkbenchReport& report = pictures_.report();
-    if (object_.hasStage() && paint_.unsaved(object_.stage())) {
-        paint_.save(object_.stage());
-        report.said = notices_.message();
-    }
+    const bool       kept   = keepPaint();
+    if (kept) report.said = notices_.message();
+    report.hasLost  = session_.recorder().hasLost() || (object_.hasStage() && paint_.unsaved(object_.stage()));
     report.realTime = session_.realTime();
     return std::move(report);
+}
+
+/// Saves what is painted and not saved: here, or where else there may be room for it.
+/// \return whether a file was written, which notices_ names
+bool Workbench::keepPaint()
+{
+    if (!object_.hasStage() || !paint_.unsaved(object_.stage())) return false;
+    const char* const home = std::getenv("HOME");
+    std::error_code   none;
+    for (const auto& folder :
+         {std::filesystem::path(), std::filesystem::path(home ? home : ""), std::filesystem::temp_directory_path(none)})
+        if (paint_.save(object_.stage(), folder)) return true;
+    return false;
 }
 
 /// Does the work on another thread; the window stays responsive, keeps its picture and names the activity.
@@ -168,6 +187,8 @@ void Workbench::adopt(OpenedObject opened)
     session_.startReplay(recorded);
     if (!recorded.cloud.empty() && recorded.cloud != fingerprint(object_.stage().object().cloud()))
         notices_.complain("the cloud is not the recorded one: " + object_.stage().scene().cloud + " has changed");
+    if (!recorded.whyIncomplete.empty())
+        notices_.complain(recorded.folder.string() + " is not complete: " + recorded.whyIncomplete);
 }
 
 /// Shows what was assumed of the cloud, as a message and not as a fault.

@@ -47,6 +47,7 @@ private:
     void                                       useObject();
     void                                       tellAssumptions();
     void                                       touch();
+    bool                                       keepPaint();
     [[nodiscard]] std::optional<WorkbenchHand> readyHand();
     template <class Work>
     auto meanwhile(const std::string& activity, Work work);

@@ -79,6 +79,7 @@ struct WorkbenchReport {
     std::uint64_t       frames = 0, touchingFrames = 0;
     std::vector<double> frameTimes; ///< time from frame to frame, while something was touched [s]
     std::string         said;       ///< a last message for the user; may be empty
+    bool                hasLost = false; ///< paint or ticks that it should have kept; it has complained of that
     std::vector<double> drawTimes;  ///< of the same frames: making the picture [s]
     std::string         realTime;   ///< real-time rights that the system refused; empty if none
 };

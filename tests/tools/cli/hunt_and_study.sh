@@ -37,6 +37,9 @@ good 'the recording scores the same' hunt --score session --json
 grep -E '"(found|mark|coverage|impulse_N_s|time_s)"' out.txt | cmp -s - live.txt && pass || complain 'a recording scores otherwise'
 good 'as a table' hunt --score session
 holds 'found 3 of 4 nodules, 1 false alarm;'
+cp -r session cut && sed -i 's/"lost": 0/"lost": 7/' cut/session.json
+good 'one that lacks ticks' hunt --score cut
+grep -q 'cut is not complete: 7 ticks are missing' err.txt && pass || complain "a score of a part: $(cat err.txt)"
 good 'in real time' hunt "$scene" --hand "$hand" --seconds 1
 holds 'nothing was declared'
 good 'hidden anew' hunt "$scene" --hand "$hand" --clock virtual --hunt-seed 7 --json
@@ -102,12 +105,16 @@ holds 'Trial 1 of 3'
 holds 'please answer 1 to 5'
 holds 'Paused after 1 of 3'
 grep -q SECRET out.txt err.txt && complain "the participant can read a condition's name" || pass
+grep -q 'apart' out.txt err.txt && complain "the participant can read what sessions warn of" || pass
+grep -q 'should read study/P01/warnings.txt' err.txt && grep -q '^trial 1: the points are .* apart' study/P01/warnings.txt && pass ||
+    complain "nobody is told what the sessions warned of: $(cat err.txt study/P01/warnings.txt)"
 [ "$(wc -l <$table)" -eq 2 ] && pass || complain "a row is missing: $(cat $table)"
 printf 'P01,2,1,real,rating,SECRETS' >>$table # as a crash within a row leaves it
 mkdir -p study/P01/trial_002 && echo '{}' >study/P01/trial_002/session.json # and within a session
 printf '\n5\n\n\n1\n' >input
 good 'and goes on after a crash' study plan.json --participant P01 --out study --clock virtual --json
-for word in '"done": 3' '"paused": false'; do holds "$word"; done
+for word in '"done": 3' '"paused": false' '"trials 2, 3: the points are '; do holds "$word"; done
+grep -q '^trial 1: ' study/P01/warnings.txt && grep -q '^trials 2, 3: ' study/P01/warnings.txt && pass || complain "the warnings: $(cat study/P01/warnings.txt)"
 cut -d, -f1-3 $table >columns.txt
 printf 'participant,trial,block\nP01,1,1\nP01,2,1\nP01,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated: $(cat $table)"
 grep -q 'P01/trial_002_again2' $table && pass || complain 'the session that was cut was written over'

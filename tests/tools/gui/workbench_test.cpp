@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdlib>
 #include <deque>
 #include <filesystem>
+#include <fstream>
 #include <functional>
+#include <optional>
 #include <thread>
 
 #include <glm/geometric.hpp>
@@ -26,6 +29,7 @@ class SeenScreen final : public Screen {
 public:
     bool show(const ViewScene& scene, const Camera& now, const PictureSize&, const Overlay*) override
     {
+        if (isLost) throw Error("the screen is lost");
         ++pictures;
         camera = now;
         points = scene.positions.size();
@@ -43,6 +47,7 @@ public:
 
     [[nodiscard]] bool said_(const std::string& words) const { return notes.find(words) != std::string::npos; }
 
+    bool        isLost   = false;
     int         pictures = 0;
     std::size_t points   = 0; ///< of what is shown
     Camera      camera;
@@ -161,6 +166,22 @@ protected:
             info.hand   = device.info();
             return info;
         };
+    }
+
+    /// Opens a file of 2000 points, paints on it and saves that.
+    void savePainted(const std::string& file)
+    {
+        settings_.what = file;
+        settings_.values.erase("points");
+        settings_.values.emplace("stiffness", kRamp);
+        wait("the object", [this] { return screen_.points == 2000; });
+        press('B');
+        step("a dab", [](WindowInput& input) { input.left = true; });
+        press('B');
+        press('S', true);
+        wait("the paint as a file", [] { return std::filesystem::exists("part-painted-0001.ply"); });
+        run();
+        EXPECT_EQ(complaints_, "");
     }
 
     /// Does all steps, then closes.
@@ -343,6 +364,25 @@ TEST_F(WorkbenchTest, WhatWasRecordedIsReplayedAndThenThePointerIsBack)
     EXPECT_EQ(complaints_, "");
 }
 
+TEST_F(WorkbenchTest, ARecordingThatStopsIsComplainedOfAtOnce)
+{
+    takeHand();
+    record();
+    wait("a force", [this] { return hand_.last > 0.05; });
+    press(kF5Key);
+    wait("rows", [] {
+        std::error_code none;
+        return std::filesystem::file_size("session-0001/ticks.npy", none) > 10'000 && !none;
+    });
+    step("another program cuts it", [](WindowInput&) { std::filesystem::resize_file("session-0001/ticks.npy", 0); });
+    wait("a sentence", [this] { return complainedOf("ticks.npy: another program has cut it short"); });
+    wait("a force", [this] { return hand_.last > 0.05; });
+    const WorkbenchReport report = run();
+
+    EXPECT_TRUE(report.hasLost);
+    EXPECT_EQ(std::ranges::count(complaints_, '\n'), 1) << complaints_;
+}
+
 TEST_F(WorkbenchTest, PaintStaysFromSessionToSessionAndIsAskedForBeforeItIsLost)
 {
     settings_.values["stiffness"] = kRamp;
@@ -376,6 +416,103 @@ TEST_F(WorkbenchTest, PaintThatNobodySavedIsSavedWhenTheWindowCloses)
 
     EXPECT_TRUE(holds(report.said, {"saved", "sheet-painted-0001.ply"})) << report.said;
     EXPECT_TRUE(std::filesystem::exists("sheet-painted-0001.ply"));
+    EXPECT_FALSE(report.hasLost);
+}
+
+/// A folder of the environment, for a time.
+class Variable {
+public:
+    Variable(const char* name, const std::filesystem::path& value) : name_(name)
+    {
+        if (const char* const was = std::getenv(name)) before_ = was;
+        ::setenv(name, value.c_str(), 1);
+    }
+    ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+    Variable(const Variable&)            = delete;
+    Variable& operator=(const Variable&) = delete;
+
+private:
+    const char*                name_;
+    std::optional<std::string> before_;
+};
+
+TEST_F(WorkbenchTest, PaintIsSavedElsewhereWhereThisFolderIsGone)
+{
+    const auto home = folder_ / "home", here = folder_ / "here";
+    for (const auto& folder : {home, here}) std::filesystem::create_directory(folder);
+    std::filesystem::current_path(here);
+    const Variable atHome("HOME", home);
+    settings_.values["stiffness"] = kRamp;
+    wait("the object", [this] { return screen_.points == 2000; });
+    press('B');
+    step("a dab", [](WindowInput& input) { input.left = true; });
+    step("its folder goes", [&](WindowInput&) { std::filesystem::remove(here); });
+    const WorkbenchReport report = run();
+
+    EXPECT_TRUE(holds(report.said, {"saved", "home/sheet-painted-0001.ply"})) << report.said;
+    EXPECT_TRUE(std::filesystem::exists(home / "sheet-painted-0001.ply"));
+    EXPECT_TRUE(complainedOf("sheet-painted-0001.ply: cannot be")) << complaints_;
+    EXPECT_FALSE(report.hasLost);
+}
+
+TEST_F(WorkbenchTest, PaintThatCannotBeSavedAnywhereIsReportedAsLost)
+{
+    const auto here = folder_ / "here";
+    std::filesystem::create_directory(here);
+    std::filesystem::current_path(here);
+    const Variable home("HOME", here), temporary("TMPDIR", here);
+    settings_.values["stiffness"] = kRamp;
+    wait("the object", [this] { return screen_.points == 2000; });
+    press('B');
+    step("a dab", [](WindowInput& input) { input.left = true; });
+    step("its folder goes", [&](WindowInput&) { std::filesystem::remove(here); });
+    const WorkbenchReport report = run();
+
+    EXPECT_EQ(report.said, "");
+    EXPECT_TRUE(report.hasLost);
+    EXPECT_TRUE(complainedOf("sheet-painted-0001.ply: cannot be")) << complaints_;
+}
+
+TEST_F(WorkbenchTest, PaintIsSavedWhenTheScreenIsLost)
+{
+    settings_.values["stiffness"] = kRamp;
+    wait("the object", [this] { return screen_.points == 2000; });
+    press('B');
+    step("a dab", [](WindowInput& input) { input.left = true; });
+    rest(0.1);
+    step("the screen goes", [this](WindowInput& input) {
+        screen_.isLost = true;
+        input.moved    = {3, 3};
+    });
+    rest(1);
+
+    EXPECT_TRUE(holds(refusalOf([this] { static_cast<void>(run()); }), {"the screen is lost"}));
+    EXPECT_TRUE(std::filesystem::exists("sheet-painted-0001.ply"));
+    EXPECT_TRUE(complainedOf("saved sheet-painted-0001.ply")) << complaints_;
+}
+
+TEST_F(WorkbenchTest, ASavedObjectKeepsItsProperties)
+{
+    const LoadedCloud         sheet = loadCloud(sceneOf("sample:sheet", {{"points", "2000"}}));
+    const std::vector<double> held(sheet.cloud.size(), 0.25);
+    const NamedField          field{"held", "1", held};
+    writeCloud("part.pcd", sheet.cloud, {&field, 1});
+    savePainted("part.pcd");
+
+    EXPECT_EQ(readCloud("part-painted-0001.ply", {}).held, held);
+}
+
+TEST_F(WorkbenchTest, ASavedObjectKeepsItsFaces)
+{
+    std::ofstream file("part.obj");
+    for (const glm::dvec3& p : loadCloud(sceneOf("sample:sheet", {{"points", "2000"}})).cloud.positions())
+        file << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+    file << "f 1 2 3\n";
+    file.close();
+    settings_.values = {{"scatter", "off"}, {"length_unit", "m"}};
+    savePainted("part.obj");
+
+    EXPECT_EQ(readCloud("part-painted-0001.ply", {}).faces.size(), 1U);
 }
 
 TEST_F(WorkbenchTest, FilesThatCannotBeOpenedAreOneSentenceAndTheObjectStays)

@@ -20,6 +20,7 @@ import ctypes
 import json
 import operator
 import os
+import warnings
 from pathlib import Path
 from typing import Any, NamedTuple, Optional, Union
 
@@ -517,12 +518,23 @@ class Session:
         _check(_lib.palpate_session_create(of._handle, ctypes.byref(settings), ctypes.byref(self._handle)))
 
     def close(self) -> None:
-        """Ends the session and its recording. It may be called again."""
+        """Ends the session and its recording. It may be called again.
+
+        Raises Error if the recording stopped early, and warns if it lost ticks; the session has ended all the same.
+        """
+        try:
+            lost = self.stop_recording()[1] if getattr(self, "_handle", None) else 0
+        finally:
+            self._destroy()
+        if lost:
+            warnings.warn(f"{lost} ticks of the recording were lost", RuntimeWarning, stacklevel=2)
+
+    def _destroy(self) -> None:
         handle, self._handle = getattr(self, "_handle", None), None
         if handle:
             _lib.palpate_session_destroy(handle)
 
-    __del__ = close
+    __del__ = _destroy
     __copy__ = __deepcopy__ = __reduce_ex__ = _no_pickle
 
     def _open(self) -> _void:
@@ -625,11 +637,21 @@ def plate(rigidity: ArrayLike, forces: ArrayLike, size: "tuple[float, float]" = 
 
 
 def read_recording(folder: Union[str, os.PathLike]) -> "tuple[np.ndarray, dict]":
-    """Reads a recorded session: its ticks as a structured array ("time", "hip", "force", ...), and session.json."""
+    """Reads a recorded session: its ticks as a structured array ("time", "hip", "force", ...), and session.json.
+
+    Warns if it is not complete.
+    """
     place = Path(folder)
     try:
         ticks = np.load(place / "ticks.npy")
         about = json.loads((place / "session.json").read_text())
     except (OSError, ValueError) as error:
         raise Error(f"{place}: expected the folder of a recorded session, found {error}") from None
+    if not isinstance(about, dict):
+        raise Error(f"{place}: expected session.json to be an object, found {type(about).__name__}")
+    missing = about.get("stopped") or (f"{about['lost']} ticks were lost" if about.get("lost") else None)
+    if not about.get("finished"):
+        missing = "its program was killed, or still records"
+    if missing:
+        warnings.warn(f"{place} is not complete: {missing}", RuntimeWarning, stacklevel=2)
     return ticks, about
