@@ -29,28 +29,36 @@ while [ $# -gt 0 ]; do
 done
 top=$(cd "$(dirname "$0")/.." && pwd)
 palpate=${palpate:-$top/build/bin/palpate}
+. "$top/tests/support/held_up.sh"
 work=$(mktemp -d)
 session=
 trap '[ -z "$session" ] || kill "$session" 2>/dev/null; rm -rf "$work"' EXIT
 failed=0
 complain() { failed=1; echo "FAILED: $*"; }
 
-"$palpate" run "$top/samples/scenes/palm_wart.json" --solver host --hand falcon-emulator --seconds "$seconds" --record "$work/session" \
-    >"$work/out.txt" 2>"$work/err.txt" </dev/null &
-session=$!
-n=0
-until [ -s "$work/session/ticks.npy" ] || [ $n -gt 300 ]; do n=$((n + 1)); sleep 0.1; done
-sleep 2 # what is made once is made
 look() { # memory [kB], threads, handles
     echo "$(awk '/^VmRSS/ { m = $2 } /^Threads/ { t = $2 } END { print m, t }' "/proc/$session/status" 2>/dev/null)" "$(ls "/proc/$session/fd" 2>/dev/null | wc -l)"
 }
 step=$((seconds / 60))
 [ $step -ge 1 ] || step=1
-while kill -0 $session 2>/dev/null; do
-    look | awk 'NF == 3 && $3 > 0' >>"$work/looks"
-    sleep $step
+attempt=1
+while :; do
+    "$palpate" run "$top/samples/scenes/palm_wart.json" --solver host --hand falcon-emulator --seconds "$seconds" --record "$work/session" \
+        >"$work/out.txt" 2>"$work/err.txt" </dev/null &
+    session=$!
+    n=0
+    until [ -s "$work/session/ticks.npy" ] || [ $n -gt 300 ]; do n=$((n + 1)); sleep 0.1; done
+    sleep 2 # what is made once is made
+    while kill -0 $session 2>/dev/null; do
+        look | awk 'NF == 3 && $3 > 0' >>"$work/looks"
+        sleep $step
+    done
+    wait $session && break
+    status=$?
+    if [ $attempt -eq 3 ] || ! was_held_up "$work/err.txt"; then complain "exit $status: $(cat "$work/err.txt")"; break; fi
+    attempt=$((attempt + 1))
+    rm -rf "$work/session" "$work/looks"
 done
-wait $session || complain "exit $?: $(cat "$work/err.txt")"
 session=
 # The last looks may have met its end.
 awk '{ m[NR] = $1; t[NR] = $2; h[NR] = $3 } END {

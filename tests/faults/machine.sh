@@ -6,6 +6,7 @@ set -u
 palpate=$1 jump=$(realpath "$2") sanitizers=${3:-}
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/checks.sh"
+. "$root/tests/support/held_up.sh"
 chmod 777 "$work"
 cp "$jump" "$work/jumping_clock.so" # LD_PRELOAD parts its paths at spaces
 jump=$work/jumping_clock.so
@@ -18,10 +19,14 @@ session() {
     shift
     while [ "$1" != -- ]; do limits="$limits $1"; shift; done
     shift
-    rm -rf recorded
-    # shellcheck disable=SC2086
-    $limits "$palpate" "$@" >out.txt 2>err.txt </dev/null
-    status=$?
+    for attempt in 1 2 3; do
+        rm -rf recorded
+        # shellcheck disable=SC2086
+        $limits "$palpate" "$@" >out.txt 2>err.txt </dev/null
+        status=$?
+        case $name in *jump* | suspended*) break ;; esac # where the governor has to stop it
+        [ $status -eq 1 ] && [ $attempt -lt 3 ] && was_held_up err.txt || break
+    done
     [ $status -lt 126 ] || complain "$name: ended by a signal, status $status: $(tail -n 2 err.txt)"
 }
 succeeds() { [ $status -eq 0 ] && pass || complain "$name: exit $status: $(cat err.txt)"; }
@@ -108,6 +113,10 @@ seconds=3
 opens() { # NAME EXPECTED ARGUMENTS...: what a session of so many seconds listens at
     name=$1 expected=$2
     shift 2
+    open_once "$@" && return
+    was_held_up err.txt && open_once "$@" || complain "$name: it is no session: $(cat err.txt)"
+}
+open_once() {
     rm -rf recorded
     # shellcheck disable=SC2086
     "$palpate" run $sheet --seconds $seconds --record recorded "$@" >out.txt 2>err.txt </dev/null &
@@ -116,7 +125,7 @@ opens() { # NAME EXPECTED ARGUMENTS...: what a session of so many seconds listen
     until [ -s recorded/ticks.npy ] || [ $n -gt 200 ]; do n=$((n + 1)); sleep 0.1; done
     found=$(ports $process)
     [ "$found" = "$expected" ] && pass || complain "$name: it listens at '$found' in place of '$expected'"
-    wait $process && [ -s recorded/ticks.npy ] || complain "$name: it is no session: $(cat err.txt)"
+    wait $process && [ -s recorded/ticks.npy ]
 }
 opens 'a session' ''
 opens 'a session with an emulated device' '' --hand falcon-emulator

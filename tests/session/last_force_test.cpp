@@ -103,7 +103,7 @@ TEST_F(LastForce, IsZeroAtTheEndOfARealSession)
 
 TEST_F(LastForce, IsZeroWhenARealSessionIsStopped)
 {
-    RealSessionSettings settings{.seconds = 1000, .onTick = notesForce()};
+    RealSessionSettings settings{.seconds = 30, .onTick = notesForce()};
     settings.stop   = &stop_;
     settings.onView = [this](const SessionView&) { stop_ = pushing_.load(); };
     real(settings);
@@ -112,7 +112,7 @@ TEST_F(LastForce, IsZeroWhenARealSessionIsStopped)
 
 TEST_F(LastForce, IsZeroWhenWhoLooksOnThrows)
 {
-    RealSessionSettings settings{.seconds = 1000, .onTick = notesForce()};
+    RealSessionSettings settings{.seconds = 30, .onTick = notesForce()};
     settings.onView = [this](const SessionView&) {
         if (pushing_) throw std::runtime_error("seen enough");
     };

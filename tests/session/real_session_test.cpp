@@ -155,55 +155,61 @@ TEST_P(RealSessions, WhoTakesRecordsMustNotThrowAndEndsTheSessionIfItDoes)
     EXPECT_THROW(run(session, deformation.solver(), settings), std::runtime_error);
 }
 
-/// Two seconds without a word from the deformation.
+/// Two seconds without a word from the deformation. A machine that holds the servo up for a tenth of a second makes the
+/// governor stop the force, as it should; then all of it is repeated, twice at most: a servo that waits for the deformation
+/// does so each time.
 TEST_P(RealSessions, AStalledDeformationLosesItsForceAndGetsItBackOnceTheHandWasLifted)
 {
-    const SheetSession  session(sheetScene(kWart));
-    const HandPath      rests({{0, {0, 0, 2e-3}},
-                               {0.1, {0, 0, -1.5e-3}},
-                               {4.6, {0, 0, -1.5e-3}},
-                               {4.7, {0, 0, 2e-3}},
-                               {4.8, {0, 0, 2e-3}},
-                               {4.9, {0, 0, -1.5e-3}},
-                               {20, {0, 0, -1.5e-3}}});
-    ScriptedHand        device(rests);
-    Deformation         deformation(session.object, session.scene);
-    RealSessionSettings settings;
-    std::atomic<double> stalled = HUGE_VAL; // [s] after the start
-    const auto          start   = std::chrono::steady_clock::now();
-    const auto          since   = [start] {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    };
-    const PatchSolver stalls = [&](const Touch& touch, double lead) {
-        if (since() > 2 && stalled == HUGE_VAL) {
-            stalled = since();
-            std::this_thread::sleep_for(std::chrono::seconds(2));
-        }
-        return deformation.solve(touch, lead);
-    };
-    constexpr double kBusy  = 0.15; // [s] by which the servo and its table may be late on a busy machine
-    bool             finite = true, flagged = false;
-    double           before = 0, without = 0, again = 0; // [N] most before, while it is dead, when it is back
-    settings.threads = GetParam();
-    settings.seconds = 7;
-    settings.onTick  = [&](const TickRecord& s) {
-        const double force = glm::length(s.force);
-        finite             = finite && std::isfinite(force);
-        flagged            = flagged || (s.faults & static_cast<std::uint32_t>(SessionFlag::oldTable)) != 0;
-        if (s.time < 2) before = std::max(before, force);
-        const double dead = since() - stalled;
-        if (dead > 0.25 + 0.02 + kBusy && dead < 1.9) without = std::max(without, force);
-        if (s.time > 6.7) again = std::max(again, force);
-    };
-    std::string          warning;
-    const SessionSummary summary = runReal({session.scene, session.object, stalls, device, {}}, settings, warning);
-    EXPECT_TRUE(finite);
-    EXPECT_TRUE(flagged);
-    EXPECT_GT(before, 0.3) << "the hand feels the sheet [N]";
-    EXPECT_EQ(without, 0);
-    EXPECT_GT(again, 0.3);
-    EXPECT_GT(summary.oldTable, 1000U);
-    EXPECT_EQ(summary.fault, GovernorFault::none);
+    for (int attempt = 0;; ++attempt) {
+        const SheetSession  session(sheetScene(kWart));
+        const HandPath      rests({{0, {0, 0, 2e-3}},
+                                   {0.1, {0, 0, -1.5e-3}},
+                                   {4.6, {0, 0, -1.5e-3}},
+                                   {4.7, {0, 0, 2e-3}},
+                                   {4.8, {0, 0, 2e-3}},
+                                   {4.9, {0, 0, -1.5e-3}},
+                                   {20, {0, 0, -1.5e-3}}});
+        ScriptedHand        device(rests);
+        Deformation         deformation(session.object, session.scene);
+        RealSessionSettings settings;
+        std::atomic<double> stalled = HUGE_VAL; // [s] after the start
+        const auto          start   = std::chrono::steady_clock::now();
+        const auto          since   = [start] {
+            return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        };
+        const PatchSolver stalls = [&](const Touch& touch, double lead) {
+            if (since() > 2 && stalled == HUGE_VAL) {
+                stalled = since();
+                std::this_thread::sleep_for(std::chrono::seconds(2));
+            }
+            return deformation.solve(touch, lead);
+        };
+        constexpr double kBusy  = 0.15; // [s] by which the servo and its table may be late on a busy machine
+        bool             finite = true, flagged = false;
+        double           before = 0, without = 0, again = 0; // [N] most before, while it is dead, when it is back
+        settings.threads = GetParam();
+        settings.seconds = 7;
+        settings.onTick  = [&](const TickRecord& s) {
+            const double force = glm::length(s.force);
+            finite             = finite && std::isfinite(force);
+            flagged            = flagged || (s.faults & static_cast<std::uint32_t>(SessionFlag::oldTable)) != 0;
+            if (s.time < 2) before = std::max(before, force);
+            const double dead = since() - stalled;
+            if (dead > 0.25 + 0.02 + kBusy && dead < 1.9) without = std::max(without, force);
+            if (s.time > 6.7) again = std::max(again, force);
+        };
+        std::string          warning;
+        const SessionSummary summary = runReal({session.scene, session.object, stalls, device, {}}, settings, warning);
+        if (summary.fault == GovernorFault::loopStalled && attempt < 2) continue;
+        EXPECT_TRUE(finite);
+        EXPECT_TRUE(flagged);
+        EXPECT_GT(before, 0.3) << "the hand feels the sheet [N]";
+        EXPECT_EQ(without, 0);
+        EXPECT_GT(again, 0.3);
+        EXPECT_GT(summary.oldTable, 1000U);
+        EXPECT_EQ(summary.fault, GovernorFault::none);
+        return;
+    }
 }
 
 TEST_P(RealSessions, AForceLeavesInTheTickThatComputesIt)
