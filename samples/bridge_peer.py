@@ -44,7 +44,7 @@ def main(port, seconds):
     line = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     line.setblocking(False)
     start = time.monotonic()
-    y = v = force = most = 0.0
+    y = v = force = most = asked = 0.0
     rendered = heard = sequence = stopped = enabled = 0
     patience, next_tick, pushed = 0.0, start, start
     while (now := time.monotonic()) < start + seconds:
@@ -59,7 +59,8 @@ def main(port, seconds):
                 rendered, heard, patience = number, now, min(ms * 1e-3, WATCHDOG_LIMIT)
                 enabled = flags & 1
                 stopped = stopped and enabled       # until a command without "enable"
-                force = fy * 1e-3 if enabled and not stopped else 0.0
+                asked = fy * 1e-3 if enabled else 0.0
+                force = 0.0 if stopped else asked
         except (BlockingIOError, ConnectionRefusedError):
             pass                    # nothing more, or nobody listens yet
         if force and now - heard > patience:        # the watchdog
@@ -76,7 +77,7 @@ def main(port, seconds):
             ("127.0.0.1", port))
         next_tick += PERIOD
         time.sleep(max(0.0, next_tick - time.monotonic()))
-    print(f"rendered at most {most:.2f} N")
+    print(f"rendered at most {most:.2f} N; the last command asked for {abs(asked):.2f} N")
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ while [ $# -gt 0 ]; do
 done
 top=$(cd "$(dirname "$0")/.." && pwd)
 palpate=${palpate:-$top/build/bin/palpate}
-. "$top/tests/support/held_up.sh"
+. "$top/tests/support/sessions.sh"
 work=$(mktemp -d)
 session=
 trap '[ -z "$session" ] || kill "$session" 2>/dev/null; rm -rf "$work"' EXIT

@@ -168,6 +168,9 @@ FalconTuning tuningOf(const std::string& serial, std::optional<double> countsByH
             tuning.note = "the Falcon runs with the " + counts(*countsByHand) +
                           " counts per N m given by hand, not with the " + counts(found->countsPerTorque) +
                           " of its calibration on " + found->date;
+        else if (serial.empty() && !countsByHand)
+            tuning.note = "this Falcon has no serial number, so that it runs with the calibration of " + found->date +
+                          " of whichever Falcon without one was calibrated last";
     } else if (!countsByHand) {
         tuning.note =
             "this Falcon has not been calibrated: its forces may be half of the right ones or twice, and nothing "

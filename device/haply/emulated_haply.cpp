@@ -104,6 +104,12 @@ void EmulatedHaply::raise(const std::string& event)
         if (peer->port_ == HaplyPort::events && peer->isSocket) peer->out += webSocketFrame(WebSocketKind::text, event);
 }
 
+void EmulatedHaply::endEvents()
+{
+    for (const auto& peer : peers_)
+        if (peer->port_ == HaplyPort::events) peer->isClosed = true;
+}
+
 void EmulatedHaply::repeat()
 {
     for (const auto& peer : peers_)
@@ -146,6 +152,7 @@ std::string EmulatedHaply::picture(bool isFull, bool hasPreset) const
                     {"control_mode", force() == glm::dvec3(0) ? "idle" : "force"}}},
             {"status", {{"calibrated", trouble_ != HaplyTrouble::uncalibrated}, {"in_use", true}, {"ready", true}}}};
         if (!settings_.echoes) device["state"].erase("current_cursor_force");
+        if (!settings_.hasSpeed) device["state"].erase("cursor_velocity");
         if (trouble_ == HaplyTrouble::huge) device["state"]["cursor_position"]["x"] = 1e308;
         if (trouble_ == HaplyTrouble::keyless) device["state"].erase("cursor_position");
         if (isFull)

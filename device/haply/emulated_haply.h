@@ -39,6 +39,7 @@ struct EmulatedHaplySettings {
     std::vector<std::string> ids        = {"049D"}; ///< of its Inverse3; the first one has the arm; empty: none yet
     bool                     echoes     = true;     ///< it says what it renders
     bool                     hasGrip    = true;
+    bool                     hasSpeed   = true; ///< it tells the velocity
     double                   forceGate  = 0;
     double                   forceScale = 1;
     double                   hold       = 5e-3; ///< [s] assumed: without a message it renders nothing after that
@@ -91,6 +92,7 @@ public:
     void cause(HaplyTrouble trouble) noexcept { trouble_ = trouble; }
     void plug(std::vector<std::string> ids) { settings_.ids = std::move(ids); }
     void raise(const std::string& event);                          ///< JSON, to every listener
+    void endEvents();                                              ///< it ends the connections that hear events
     void repeat();                                                 ///< its state to every client, asked or not
     void ignoreForces() noexcept { settings_.takesForce = false; } ///< from now on, as if another client had them
     void stop();                                                   ///< it ends all connections, and takes no more

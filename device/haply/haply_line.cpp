@@ -200,7 +200,8 @@ HaplyLine::HaplyLine(HaplyOpener open, const HaplyLineSettings& settings) : open
 
 void HaplyLine::open(HapticDeviceInfo& info)
 {
-    state_    = {};
+    state_ = {};
+    moved_.restart();
     inFlight_ = pushes_ = confirmed_ = swapped_ = isGone_ = isBraked_ = takesNone_ = false;
     unheard_ = absent_ = unasked_ = 0;
     stoppedUntil_                 = 0;
@@ -236,7 +237,10 @@ void HaplyLine::open(HapticDeviceInfo& info)
     }
     try {
         events_ = std::make_unique<WebSocketClient>(open_(HaplyPort::events), "localhost", 0.2);
-    } catch (const std::exception&) { // faults then have no words, and nothing else is missing
+    } catch (const std::exception&) {
+        info.note +=
+            std::string(info.note.empty() ? "" : "; ") +
+            "the Inverse Service tells no events: an emergency brake is noticed by its force alone, 0.2 s later";
     }
 }
 
@@ -392,8 +396,10 @@ void HaplyLine::hearEvents(double now)
                 stop(now + (isRelease ? kPause : kStopped), event.words);
             }
         }
-    } catch (const std::exception&) { // the events end; the device does not
+    } catch (const std::exception&) {
         events_.reset();
+        stop(kForever,
+             "the Inverse Service tells no events any more, such as an emergency brake; start the session again");
     }
 }
 
@@ -418,9 +424,10 @@ void HaplyLine::take(const std::string& answer, LineSample& sample)
         return;
     }
     checkEcho();
-    sample.news        = LineNews::sample;
-    sample.position    = state_.position;
-    sample.velocity    = state_.velocity;
+    sample.news     = LineNews::sample;
+    sample.position = state_.position;
+    moved_.add(clock_, state_.position);
+    sample.velocity    = state_.velocity.value_or(moved_.velocity());
     sample.orientation = state_.orientation;
     sample.buttons     = state_.buttons;
     sample.homed       = state_.calibrated && state_.ready;

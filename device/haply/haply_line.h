@@ -7,6 +7,7 @@
 #include "device/haply/haply_message.h"
 #include "device/haply/web_socket.h"
 #include "device/line_device.h"
+#include "device/velocity_filter.h"
 
 namespace palp {
 
@@ -113,6 +114,7 @@ private:
     std::string                      id_;
     HaplyDialect                     dialect_ = HaplyDialect::vector;
     HaplyState                       state_;
+    VelocityFilter                   moved_{15e-3};         ///< [s] of positions, where the service tells no velocity
     double                           clock_        = 0;     ///< [s] of the line
     double                           asked_        = 0;     ///< [s] when the last request left
     bool                             inFlight_     = false; ///< its answer has not come

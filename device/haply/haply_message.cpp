@@ -304,7 +304,7 @@ HaplyVerdict takeHaplyState(std::string_view json, std::string_view id, HaplySta
     if (speed && !velocity) return HaplyVerdict::garbled;
 
     state.position = *position;
-    if (velocity) state.velocity = *velocity;
+    state.velocity = velocity;
     state.rendered   = vectorAt(*device, {"state", "current_cursor_force"});
     state.calibrated = truthAt(*device, {"status", "calibrated"}).value_or(state.calibrated);
     state.ready      = truthAt(*device, {"status", "ready"}).value_or(state.ready);

@@ -78,7 +78,7 @@ struct HaplyDescription {
 /// What a service says of a device in each answer, in our frame.
 struct HaplyState {
     glm::dvec3                position{};              ///< [m]
-    glm::dvec3                velocity{};              ///< [m/s]
+    std::optional<glm::dvec3> velocity{};              ///< [m/s]; empty: the answer does not say
     std::optional<glm::dvec3> rendered{};              ///< [N] that the service says it renders; empty: it does not say
     glm::dquat                orientation{1, 0, 0, 0}; ///< of a grip
     bool                      hasGrip    = false;

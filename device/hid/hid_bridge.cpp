@@ -25,7 +25,10 @@ constexpr double kSilencedTime = 0.1; // [s] of DeviceFault::silenced: the gover
 constexpr int    kRestart = 20; // answers that count on from an old number before the device is taken to have restarted
 constexpr int    kMostReports = 64;   // per pass, so that a flooded host still writes
 constexpr double kFrames      = 1e-3; // [s] that USB holds a report and a command back: on average half a frame each
-constexpr double kFarOut      = 2;    // [1] times the workspace's radius: no arm reaches that far
+constexpr double kUsualBehind =
+    5e-3; // [s] of the command that a device renders behind the newest: a way there and back
+constexpr double kMostBehind = 25e-3; // [s] as long as a guardian waits; more, and forces are old or another program's
+constexpr double kFarOut     = 2;     // [1] times the workspace's radius: no arm reaches that far
 
 double secondsSince(std::chrono::steady_clock::time_point then)
 {
@@ -70,7 +73,11 @@ void HidBridgeDevice::open()
     goesOn_       = 0;
     sent_         = 0;
     hot_          = false;
+    isEchoed_     = false;
+    written_      = 0;
     homing_       = false;
+    offAt_        = 0;
+    isBehind_     = false;
     wanted_       = {};
     started_ = stopped_ = impossible_ = false;
     seenGood_ = seenGarbled_ = seenSilenced_ = 0;
@@ -166,17 +173,30 @@ void HidBridgeDevice::takeAnswer(const BridgeAnswer& answer) noexcept
     goesOn_      = 0;
     seen_.answer = answer;
     seen_.time   = Clock::now();
+    seen_.behind = behind(answer.command);
     ++seen_.good;
+}
+
+/// Returns by how much the command of that number is older than the newest that was sent [s]; infinity if it is none of the
+/// last, as where another program drives the device. A device that never told the number of ours is not judged.
+double HidBridgeDevice::behind(std::uint16_t command) noexcept
+{
+    const bool isOurs = std::uint16_t(sent_ - command) < std::min(written_, sentAt_.size());
+    isEchoed_         = isEchoed_ || isOurs;
+    if (!isEchoed_) return 0;
+    return isOurs ? std::chrono::duration<double>(lastSent_ - sentAt_[command % sentAt_.size()]).count() : HUGE_VAL;
 }
 
 /// \throws HidLost if the device went away
 void HidBridgeDevice::send(BridgeCommand command)
 {
-    command.sequence = ++sent_;
-    command.watchdog = settings_.watchdog;
-    hot_             = command.enable;
-    lastSent_        = Clock::now();
+    command.sequence                = ++sent_;
+    command.watchdog                = settings_.watchdog;
+    hot_                            = command.enable;
+    lastSent_                       = Clock::now();
+    sentAt_[sent_ % sentAt_.size()] = lastSent_;
     port_->write(encode(command));
+    ++written_;
     if (!port_->wasSilenced()) return;
     sent_ = std::uint16_t(sent_ + kBridgeZeroAhead); // the guardian's zeros have counted ahead
     ++seen_.silenced;
@@ -284,6 +304,7 @@ void HidBridgeDevice::command() noexcept
     outbox_.draft()        = {{}, Clock::now()};
     command.enable = state_.fault == DeviceFault::none && isFinite(wanted_) && state_.homed && info_.maximumForce > 0;
     command.force  = command.enable ? renderable(wanted_) : glm::dvec3(0);
+    if (!command.enable) offAt_ = lastRead_;
     command.home   = homing_ && !state_.homed;
     command.lights = lights_;
     outbox_.publish();
@@ -296,6 +317,7 @@ void HidBridgeDevice::followClock(double now) noexcept
     const double back = lastRead_ - now;
     lastRead_ -= back;
     lastAnswer_ -= back;
+    offAt_ -= back;
     silencedUntil_ -= back;
     state_.time -= back;
 }
@@ -326,7 +348,8 @@ void HidBridgeDevice::readInbox(double now) noexcept
     readsWithout_              = 0;
     state_.sequence            = inbox.good;
     state_.time                = settings_.pace == HidPace::thread ? now - secondsSince(inbox.time) : now;
-    state_.age                 = kFrames;
+    state_.age                 = kFrames + std::clamp(inbox.behind - kUsualBehind, 0.0, kMostBehind);
+    isBehind_                  = inbox.behind > kMostBehind && (isBehind_ || now - offAt_ > 2 * kMostBehind);
     stopped_                   = answer.has(BridgeFlag::stopped);
     state_.homed               = answer.has(BridgeFlag::homed);
     impossible_                = glm::length(answer.position) > kFarOut * answer.workspaceRadius;
@@ -346,7 +369,7 @@ DeviceFault HidBridgeDevice::faultAt(double now) const noexcept
         return inbox_.held()->garbled != seenGarbled_ ? DeviceFault::garbled : DeviceFault::silent;
     if (now < silencedUntil_) return DeviceFault::silenced;
     if (impossible_) return DeviceFault::kinematics;
-    if (stopped_) return DeviceFault::ownWatchdog;
+    if (stopped_ || isBehind_) return DeviceFault::ownWatchdog;
     if (!isFinite(wanted_)) return DeviceFault::badForce;
     if (started_ && now - lastRead_ > kHostTooSlow) return DeviceFault::hostTooSlow;
     return DeviceFault::none;

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
@@ -46,8 +47,14 @@ public:
     void        close() noexcept override;
     HapticState read(double now) noexcept override;
     void        render(const GovernedForce& force) noexcept override;
-    void        home() noexcept override { homing_ = true; }
-    void        light(std::uint8_t lights) noexcept override { lights_ = lights; }
+    /// \return of a device that renders other commands than the newest; else empty
+    [[nodiscard]] const char* faultWords() const noexcept override
+    {
+        return isBehind_ ? "it takes no commands of this program, or takes them late; does another program drive it?"
+                         : "";
+    }
+    void home() noexcept override { homing_ = true; }
+    void light(std::uint8_t lights) noexcept override { lights_ = lights; }
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -59,6 +66,7 @@ private:
         std::uint64_t     garbled  = 0; ///< invalid reports
         std::uint64_t     silenced = 0; ///< times that the guardian took the force
         bool              lost     = false;
+        double behind = 0; ///< [s] by which the command that the device renders is older than the newest that was sent
     };
 
     struct TimedCommand {
@@ -67,15 +75,16 @@ private:
     };
 
     // Used by the thread, or by read() where that sets the pace.
-    void receive(double wait);
-    void takeAnswer(const BridgeAnswer& answer) noexcept;
-    void send(BridgeCommand command);
-    void sendNewest();
-    void letFall();
-    void sendShare(double most);
-    bool readAndWrite(double wait) noexcept;
-    void run(const std::stop_token& stop) noexcept;
-    void sayZero() noexcept;
+    void                 receive(double wait);
+    void                 takeAnswer(const BridgeAnswer& answer) noexcept;
+    [[nodiscard]] double behind(std::uint16_t command) noexcept;
+    void                 send(BridgeCommand command);
+    void                 sendNewest();
+    void                 letFall();
+    void                 sendShare(double most);
+    bool                 readAndWrite(double wait) noexcept;
+    void                 run(const std::stop_token& stop) noexcept;
+    void                 sayZero() noexcept;
 
     // Used by read() and render().
     void                      followClock(double now) noexcept;
@@ -96,15 +105,18 @@ private:
     Latest<Inbox>             inbox_;
 
     // Used by the thread, or by read() where that sets the pace.
-    std::unique_ptr<HidPort> port_;
-    Inbox                    seen_;
-    bool                     wrongVersion_ = false;
-    std::uint16_t            lastRefused_  = 0;     ///< sequence of the last answer that was too old
-    int                      goesOn_       = 0;     ///< old answers with consecutive numbers
-    std::uint16_t            sent_         = 0;     ///< sequence of the last command
-    bool                     hot_          = false; ///< the last command may have had the motors on
-    double                   share_        = 1;     ///< [1] share of the requested force that is sent
-    Clock::time_point        lastAsked_, lastSent_;
+    std::unique_ptr<HidPort>          port_;
+    Inbox                             seen_;
+    bool                              wrongVersion_ = false;
+    std::uint16_t                     lastRefused_  = 0; ///< sequence of the last answer that was too old
+    int                               goesOn_       = 0; ///< old answers with consecutive numbers
+    std::uint16_t                     sent_         = 0; ///< sequence of the last command
+    std::array<Clock::time_point, 64> sentAt_{};         ///< by sequence, modulo their number
+    std::size_t                       written_  = 0;     ///< commands so far
+    bool                              isEchoed_ = false; ///< the device has told the number of one of those commands
+    bool                              hot_      = false; ///< the last command may have had the motors on
+    double                            share_    = 1;     ///< [1] share of the requested force that is sent
+    Clock::time_point                 lastAsked_, lastSent_;
 
     // Used by read() and render().
     HapticState   state_;
@@ -116,6 +128,8 @@ private:
     double        silencedUntil_ = 0;     ///< [s]
     bool          stopped_       = false; ///< the device reports it
     bool          impossible_    = false; ///< the last position was impossible
+    bool          isBehind_      = false; ///< it renders commands that are old, or another program's
+    double        offAt_         = 0;     ///< [s] when a command last had the motors off
     double        lastAnswer_    = 0;     ///< [s]
     double        lastRead_      = 0;     ///< [s]
 

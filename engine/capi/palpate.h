@@ -214,7 +214,7 @@ typedef struct palpate_session_settings {
     size_t size;              /**< of this struct, as PALPATE_INIT sets it */
     double device_mass;       /**< of the arm as the grip feels it [kg] */
     double device_damping;    /**< of the arm without its motors [N s/m] */
-    double maximum_force;     /**< that the device holds [N] */
+    double maximum_force;     /**< that the device holds [N]; 0: 8 N, the most that a scene may ask for */
     double maximum_stiffness; /**< of a wall that it renders stably at 1 kHz [N/m] */
 } palpate_session_settings;
 
@@ -222,7 +222,7 @@ typedef struct palpate_session_settings {
 typedef struct palpate_hand {
     size_t   size;        /**< of this struct, as PALPATE_INIT sets it */
     double   position[3]; /**< of the haptic interface point [m] */
-    double   velocity[3]; /**< filtered [m/s] */
+    double   velocity[3]; /**< filtered [m/s]; all 0: taken from the positions of the last 15 ms */
     double   age;         /**< of the position [s] */
     uint32_t buttons;     /**< bit 0, held for 20 ms, clears a fault of the governor */
     uint32_t absent;      /**< not 0: the device has no position now; no force flows */

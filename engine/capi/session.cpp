@@ -19,6 +19,7 @@ struct palpate_session {
     palp::SteppedSession session;
     palp::TickRecord     last{};         ///< of step()'s thread
     std::atomic<double>  force{};        ///< [N] its magnitude, for the renderer's thread
+    std::atomic_flag     isStepping{};   ///< by one thread; a second one gets no force
     double               shownForce = 0; ///< [N] of the renderer's thread
     std::uint64_t        shown      = 0; ///< counts what the renderer's thread was given
 };
@@ -81,7 +82,9 @@ HapticDeviceInfo deviceOf(const palpate_session_settings* settings)
 /// Runs a tick. Nothing here throws or allocates.
 palpate_answer answerOf(palpate_session& session, double time, const palpate_hand& hand) noexcept
 {
-    palpate_answer    own{};
+    palpate_answer own{};
+    own.flags = PALPATE_BAD_INPUT;
+    if (session.isStepping.test_and_set(std::memory_order_acquire)) return own; // another thread's step has the force
     const TickRecord& r = session.session.step(time, handOf(hand));
     put(r.force, own.force);
     own.flags = flagsOf(r, (r.device & 0xFFU) != std::uint32_t(DeviceFault::kinematics)); // as step() calls it;
@@ -92,6 +95,7 @@ palpate_answer answerOf(palpate_session& session, double time, const palpate_han
     own.stiffness = r.stiffness;
     session.force.store(glm::length(r.force), std::memory_order_relaxed);
     session.last = r;
+    session.isStepping.clear(std::memory_order_release);
     return own;
 }
 

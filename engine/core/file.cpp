@@ -254,7 +254,7 @@ bool isThere(const std::filesystem::path& path)
 std::string sentenceOf(const std::filesystem::filesystem_error& error)
 {
     const std::string path = error.path1().string();
-    return (path.empty() ? "the current folder" : path) + ": cannot be read: " + error.code().message();
+    return (path.empty() ? "the current folder" : path) + ": " + error.code().message();
 }
 
 std::uint64_t sizeOfFile(const std::filesystem::path& path)

@@ -97,7 +97,9 @@ GovernorOutput ForceGovernor::step(const GovernorInput& in) noexcept
     if (!in.inBox) mark(out, GovernorAction::outsideBox);
     if (in.letGo) mark(out, GovernorAction::lettingGo);
     if (in.clutched) mark(out, GovernorAction::clutched);
-    const bool may = in.homed && in.inBox && !in.letGo && !in.clutched;
+    const bool jumped = hasJumped(in);
+    if (jumped) mark(out, GovernorAction::jumped);
+    const bool may = in.homed && in.inBox && !in.letGo && !in.clutched && !jumped;
     if (!may) release();
 
     const double fresh = freshness(usableAge(in)); // 3
@@ -212,6 +214,26 @@ void ForceGovernor::release() noexcept
     if (engagement_ == Engagement::engaging || engagement_ == Engagement::engaged) engagement_ = Engagement::releasing;
 }
 
+/// Returns the time of the position, by the governor's clock [s].
+double ForceGovernor::measuredAt(const GovernorInput& in) const noexcept
+{
+    return clock_ - credible(in.sinceAnswer, settings_.stall) - credible(in.answerAge, settings_.stall);
+}
+
+bool ForceGovernor::isJump(double distance, double time) noexcept
+{
+    constexpr double kSlip = 1e-3, kFastest = 4; // [m] an encoder's step and more, [m/s] three times maximumSpeed
+    return distance > kSlip + kFastest * std::max(0.0, time);
+}
+
+/// Returns whether the position is not that of the hand that was elsewhere before: a surface that is not there would push it with
+/// all of its force.
+bool ForceGovernor::hasJumped(const GovernorInput& in) const noexcept
+{
+    if (!hasPosition_ || !in.homed || !finite(in.position)) return false;
+    return isJump(glm::length(in.position - lastPosition_), measuredAt(in) - lastMeasured_);
+}
+
 void ForceGovernor::checkInput(const GovernorInput& in) noexcept
 {
     if (!finite(in.force) || !std::isfinite(in.admittedEnergy) || std::isnan(in.storedEnergy))
@@ -241,9 +263,8 @@ double ForceGovernor::freshness(double age) const noexcept
 
 void ForceGovernor::observeEnergy(const GovernorInput& in, double dt) noexcept
 {
-    const bool   known = in.homed && finite(in.position);
-    const double measured =
-        clock_ - credible(in.sinceAnswer, settings_.stall) - credible(in.answerAge, settings_.stall);
+    const bool   known    = in.homed && finite(in.position);
+    const double measured = measuredAt(in);
     if (engagement_ == Engagement::waiting) {
         energy_ = 0;
     } else if (known && hasPosition_) {

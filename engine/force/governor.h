@@ -101,7 +101,8 @@ enum class GovernorAction : std::uint32_t {
     late       = 1024, ///< a tick was so late that its force is less than wanted
     lifting    = 2048, ///< less than the arm's weight is carried: it comes on, or goes
     lettingGo  = 4096, ///< whoever drives the loop wants no force: GovernorInput::letGo
-    clutched   = 8192  ///< GovernorInput::clutched
+    clutched   = 8192, ///< GovernorInput::clutched
+    jumped     = 16384 ///< the grip is where no hand can have moved it since the tick before
 };
 
 /// Input of one tick. Vectors share one frame.
@@ -146,7 +147,7 @@ struct GovernorOutput {
 /// Checks every force before a device: no force leaves without it. Each tick takes these steps, in this order:
 ///
 ///   1  the input is credible: finite, the clock runs, the device answers           else fault, 0
-///   2  homed, in the box and not clutched                                          else 0, then engage anew
+///   2  homed, in the box and not clutched; moved by at most 1 mm and 4 m/s          else 0, then engage anew
 ///   3  fresh: held for 5 ms, to zero in 20 ms                                      then engage anew;
 ///      after a late tick as much of the force as a loop that is always so late bears
 ///   4  passivity: E -= f (x - x'); if E < 0, f -= alpha v
@@ -201,6 +202,12 @@ public:
     /// Returns what the spring at the cap leaves of the arm's damping [N s/m]; 0 if it is unknown.
     [[nodiscard]] double spareDamping() const noexcept { return usableDamping() - creditedDamping(); }
 
+    /// Returns whether a grip cannot have moved so far in that time: a tracker that lost it, a frame that was moved, a device that
+    /// counts anew.
+    /// \param distance  [m]
+    /// \param time      [s]
+    [[nodiscard]] static bool isJump(double distance, double time) noexcept;
+
     [[nodiscard]] GovernorFault           fault() const noexcept { return fault_; }
     [[nodiscard]] const GovernorSettings& settings() const noexcept { return settings_; }
 
@@ -230,6 +237,8 @@ private:
     void                     note(const glm::dvec3& sent, const GovernorInput& in) noexcept;
     void                     latch(GovernorFault fault) noexcept;
     void                     release() noexcept;
+    [[nodiscard]] bool       hasJumped(const GovernorInput& in) const noexcept;
+    [[nodiscard]] double     measuredAt(const GovernorInput& in) const noexcept;
     void                     checkInput(const GovernorInput& in) noexcept;
     [[nodiscard]] double     usableAge(const GovernorInput& in) const noexcept;
     [[nodiscard]] double     freshness(double age) const noexcept;

@@ -10,9 +10,9 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/core/json_object.h"
-#include "engine/core/quantity.h"
 #include "engine/core/shown_text.h"
 #include "engine/force/governor.h"
 #include "engine/session/scene_keys.h"
@@ -68,10 +68,12 @@ std::optional<SessionClocks> clocksOf(const JsonObject& file)
 std::string whyIncomplete(const JsonObject& file, bool finished)
 {
     if (!finished) return "it has no end: its program was killed, or still records";
-    const auto count = [&](std::string_view key) { return file.has(key) ? file.number(key) : 0; };
+    const auto count = [&](std::string_view key) {
+        return std::size_t(file.has(key) ? std::clamp(file.number(key), 0.0, 1e15) : 0);
+    };
     if (file.has("stopped") && file.json("stopped") != "null") return shownText(file.text("stopped"), kMostOfReason);
-    if (count("lost") > 0) return shortNumber(count("lost")) + " ticks are missing in it";
-    if (count("markers_lost") > 0) return shortNumber(count("markers_lost")) + " markers are missing in it";
+    if (count("lost") > 0) return "it lacks " + counted(count("lost"), "tick");
+    if (count("markers_lost") > 0) return "it lacks " + counted(count("markers_lost"), "marker");
     return {};
 }
 

@@ -4,8 +4,11 @@
 #include <thread>
 #include <utility>
 
+#include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "device/velocity_filter.h"
+#include "engine/core/real_time.h"
 #include "engine/session/detail/deformation_loop.h"
 
 namespace palp {
@@ -22,6 +25,14 @@ bool isGood(const Hand& hand)
     return isFinite(hand.position) && isFinite(hand.velocity) && std::isfinite(q.w) && isFinite({q.x, q.y, q.z});
 }
 
+/// Takes a host's device as one that pushes on a hand. Where its force is not known it is taken for the largest that a scene may
+/// have, so that what else is known of it counts, and nothing that is not is credited.
+HapticDeviceInfo withUnknowns(HapticDeviceInfo device)
+{
+    if (!(device.maximumForce > 0)) device.maximumForce = GovernorSettings::kMostForce;
+    return device;
+}
+
 } // namespace
 
 struct SteppedSession::Impl {
@@ -33,15 +44,18 @@ struct SteppedSession::Impl {
     DeformationLoop          loop;
     std::optional<Recording> recording;
     TickRecord               last{};
-    Hand                     hand{};    ///< the last good one
-    double                   time  = 0; ///< [s] of the last tick
-    bool                     begun = false;
-    std::uint64_t            steps = 0;
-    std::atomic<bool>        over  = false;
+    Hand                     hand{};       ///< the last good one
+    VelocityFilter           moved{15e-3}; ///< [s] as drivers of devices take it
+    double                   time   = 0;   ///< [s] of the last tick
+    double                   asleep = timeAsleep();
+    bool                     begun  = false;
+    bool                     zeroed = false; ///< a bad tick gave no force, until the governor gives none either
+    std::uint64_t            steps  = 0;
+    std::atomic<bool>        over   = false;
     std::thread              thread;
 
     Impl(SoftObject touched, const Scene& given, const HapticDeviceInfo& hold)
-        : object(std::move(touched)), scene(given), device(hold), deformation(object, scene),
+        : object(std::move(touched)), scene(given), device(withUnknowns(hold)), deformation(object, scene),
           servo(object, scene, device, deformation.firstLaw()), loop(deformation.solver(), scene.deformationRate)
     {
         thread = std::thread([this] { loop.run(over); });
@@ -64,20 +78,30 @@ SteppedSession::~SteppedSession() = default;
 const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
 {
     constexpr double kNominal = 1e-3; // [s] of the first tick, and of one whose time is not good
+    constexpr double kAsleep  = 0.05; // [s] no machine wakes within less
     Impl&            s        = *impl_;
     const bool       rises    = std::isfinite(time) && (!s.begun || time > s.time);
     const bool       good     = rises && isGood(given);
-    const double     dt       = s.begun && rises ? time - s.time : kNominal;
+    const double     slept    = timeAsleep() - s.asleep; // a machine that was suspended: the hand is elsewhere
+    const double     pause    = slept > kAsleep ? slept : 0;
+    const double     dt       = (s.begun && rises ? time - s.time : kNominal) + pause;
+    s.asleep += pause;
     if (rises) s.time = time;
     s.begun = true;
     ++s.steps;
     Hand hand = good ? given : s.hand;
-    if (good) s.hand = given;
+    if (good) {
+        if (ForceGovernor::isJump(glm::length(given.position - s.hand.position), dt)) s.moved.restart();
+        s.hand = given;
+        s.moved.add(s.time, given.position);
+        if (given.velocity == glm::dvec3(0)) hand.velocity = s.moved.velocity(); // many a host has none
+    }
     if (!good) hand.device = DeviceFault::kinematics;
     hand.answerTime = s.time;
     hand.sequence   = s.steps;
     s.last          = s.servo.tick({s.time, dt}, hand, s.loop.newest(s.servo.tableInUse()));
-    if (!good) s.last.force = {};
+    s.zeroed        = !good || (s.zeroed && s.last.force != glm::dvec3(0));
+    if (s.zeroed) s.last.force = {};
     s.loop.touch.draft() = s.servo.touch();
     s.loop.touch.publish();
     if (s.recording) s.recording->push(s.last);
@@ -98,8 +122,9 @@ const Patch* SteppedSession::patch() const noexcept
 void SteppedSession::record(const std::filesystem::path& folder, const std::string& program)
 {
     if (impl_->recording)
-        throw Error(folder.string() + ": expected a session that is not recorded, found one that is; end that recording "
-                                      "first");
+        throw Error(folder.string() +
+                    ": expected a session that is not recorded, found one that is; end that recording "
+                    "first");
     const bool  nameless = impl_->scene.cloud.empty();
     SessionInfo info{.scene    = impl_->scene,
                      .versions = {{"palpate", program}},

@@ -58,7 +58,7 @@ constexpr std::array kColumns = {
     SessionColumn{"actions", Type::uint32, 1, offsetof(S, actions), "1",
                   "of the governor: 1 not homed, 2 outside of the box, 4 stale, 8 damped, 16 active, 32 clamped, 64 "
                   "slewed, 128 waiting, 256 engaging, 512 releasing, 1024 late, 2048 weight not carried whole, 4096 "
-                  "let go before a stop, 8192 clutched",
+                  "let go before a stop, 8192 clutched, 16384 the place jumped",
                   false},
     SessionColumn{
         "device", Type::uint32, 1, offsetof(S, device), "1",

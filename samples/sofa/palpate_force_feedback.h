@@ -1,8 +1,10 @@
 #pragma once
 #include <chrono>
 #include <cmath>
+#include <mutex>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <palpate.h>
 #include <sofa/component/haptics/ForceFeedback.h>
@@ -19,7 +21,11 @@ public:
     sofa::Data<double>      d_stiffness{
         initData(&d_stiffness, 1000.0, "maximumStiffness", "of a wall that the device renders stably at 1 kHz [N/m]")};
 
-    ~PalpateForceFeedback() override { palpate_session_destroy(session_); }
+    ~PalpateForceFeedback() override
+    {
+        const std::lock_guard gate(gate_); // the driver's thread may be in a step
+        palpate_session_destroy(std::exchange(session_, nullptr));
+    }
 
     void init() override
     {
@@ -29,17 +35,22 @@ public:
         auto device              = PALPATE_INIT(palpate_session_settings);
         device.maximum_force     = d_force.getValue();
         device.maximum_stiffness = d_stiffness.getValue();
-        const int code           = palpate_session_create(object, &device, &session_);
+        palpate_session* session = nullptr;
+        const int        code    = palpate_session_create(object, &device, &session);
         palpate_object_destroy(object);
         check(code);
+        const std::lock_guard gate(gate_);
         metres_ = d_metres.getValue();
+        palpate_session_destroy(std::exchange(session_, session)); // of an earlier init()
     }
 
     void computeForce(SReal x, SReal y, SReal z, SReal /*u*/, SReal /*v*/, SReal /*w*/, SReal /*q*/, SReal& fx,
                       SReal& fy, SReal& fz) override
     {
         fx = fy = fz = 0;
-        if (!session_) return;
+        const std::unique_lock gate(gate_,
+                                    std::try_to_lock); // it never waits: no force while the session is made or ended
+        if (!gate || !session_) return;
         const std::chrono::duration<double> now = std::chrono::steady_clock::now() - begin_;
         const double                        place[3]{metres_ * x, metres_ * y, metres_ * z};
         auto                                hand   = PALPATE_INIT(palpate_hand);
@@ -77,6 +88,7 @@ private:
         time_ = now;
     }
 
+    std::mutex                                  gate_;
     palpate_session*                            session_ = nullptr;
     double                                      metres_  = 0; ///< in a unit of the driver
     const std::chrono::steady_clock::time_point begin_   = std::chrono::steady_clock::now();

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -167,6 +169,77 @@ TEST(CInterface, AFirstStepAgainAtItsTimeIsBadInput)
     EXPECT_FALSE(session.step(0, 5e-3).flags & PALPATE_BAD_INPUT);
     EXPECT_TRUE(session.step(0, 5e-3).flags & PALPATE_BAD_INPUT);
     EXPECT_FALSE(session.step(1e-3, 5e-3).flags & PALPATE_BAD_INPUT);
+}
+
+/// A tracker that loses the hand, or a host that moves its frame: from above the sheet into it within a tick, by a host that
+/// has no velocities. Then a bad tick while a force flows.
+TEST(CInterface, AHandThatJumpsIsNotPushed)
+{
+    const Object  object;
+    const Session session(object);
+    double        time = 0;
+    const auto    go   = [&](int ticks, double height) {
+        double most = 0;
+        for (int n = 0; n < ticks; ++n) {
+            most = std::max(most, std::abs(session.step(time += 1e-3, height).force[2]));
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return most;
+    };
+    go(2000, 1e-3); // a plate is solved, and the force may come
+    double height = 1e-3;
+    for (; height > -1.5e-3; height -= 1e-5) go(1, height);
+    ASSERT_GT(go(100, height), 0.2) << "a hand that presses feels the sheet";
+    go(2000, 5e-3);
+    EXPECT_EQ(go(300, -10e-3), 0);
+}
+
+TEST(CInterface, AfterABadTickTheForceDoesNotComeBackAtOnce)
+{
+    const Object  object;
+    const Session session(object);
+    double        time  = 0;
+    double        force = 0;
+    for (double height = 3e-3; time < 4; height = std::max(-1.5e-3, height - 4e-6)) {
+        force = session.step(time += 1e-3, height).force[2];
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ASSERT_GT(force, 0.2);
+    EXPECT_TRUE(session.step(time, -1.5e-3).flags & PALPATE_BAD_INPUT);
+    double before = 0;
+    for (int n = 0; n < 100; ++n) {
+        const double now = session.step(time += 1e-3, -1.5e-3).force[2];
+        EXPECT_LE(now, before + 1e-9) << n;
+        before = now;
+    }
+}
+
+/// A step that another thread's step finds at work has no force.
+TEST(CInterface, TwoThreadsThatStepGiveNoForceThatIsNotTheGovernors)
+{
+    const Object      object;
+    const Session     session(object);
+    std::atomic<int>  refused = 0;
+    std::atomic<bool> over    = false;
+    std::thread       other([&] {
+        while (!over) {
+            auto hand        = PALPATE_INIT(palpate_hand);
+            auto answer      = PALPATE_INIT(palpate_answer);
+            hand.position[2] = 0.01;
+            static_cast<void>(palpate_session_step(session.handle, 1e6, &hand, &answer));
+        }
+    });
+    for (int n = 0; n < 20'000; ++n) {
+        auto hand        = PALPATE_INIT(palpate_hand);
+        auto answer      = PALPATE_INIT(palpate_answer);
+        hand.position[2] = 0.01;
+        EXPECT_EQ(palpate_session_step(session.handle, 1e-3 * n, &hand, &answer), PALPATE_OK);
+        refused += (answer.flags & PALPATE_BAD_INPUT) != 0;
+        for (const double part : answer.force) ASSERT_TRUE(part == 0);
+    }
+    over = true;
+    other.join();
+    EXPECT_GT(refused, 0);
 }
 
 TEST(CInterface, AnObjectIsForSeveralThreadsAtOnce)

@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 import unittest
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -257,6 +258,49 @@ class Sessions(unittest.TestCase):
                 self.assertIn("still records", str(warned.warning))
                 os.truncate(folder / "ticks.npy", 0)
         self.assertIn("cut", str(caught.exception))
+
+    def test_what_ends_a_block_comes_before_its_recording(self):
+        folder = SCRATCH / "cut too"
+        with self.assertWarns(RuntimeWarning) as warned:
+            try:
+                with palpate.Object(*sheet(), **SCENE).session() as session:
+                    session.record(folder)
+                    session.step(0, [0, 0, 0.01])
+                    time.sleep(0.1)
+                    os.truncate(folder / "ticks.npy", 0)
+                    raise KeyError("the caller's own")
+            except KeyError:
+                pass
+        self.assertIn("cut", str(warned.warning))
+
+    def test_what_a_recording_lacks_is_said(self):
+        folder = SCRATCH / "whole"
+        with palpate.Object(*sheet(), **SCENE).session() as session:
+            session.record(folder)
+            session.step(0, [0, 0, 0.01])
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            palpate.read_recording(folder)
+        about = (folder / "session.json").read_text()
+        for was, now, words in (('"lost": 0', '"lost": 3', "3 ticks"), ('"stopped": null', '"stopped": "full"', "full"),
+                                ('"markers_lost": 0', '"markers_lost": 2', "2 markers")):
+            (folder / "session.json").write_text(about.replace(was, now, 1))
+            with self.assertWarns(RuntimeWarning) as warned:
+                palpate.read_recording(folder)
+            self.assertIn(words, str(warned.warning))
+
+    def test_a_current_folder_that_is_gone(self):
+        gone, here = SCRATCH / "gone", os.getcwd()
+        gone.mkdir()
+        with palpate.Object(*sheet(), **SCENE).session() as session:
+            os.chdir(gone)
+            try:
+                gone.rmdir()
+                with self.assertRaises(palpate.Error) as caught:
+                    session.record("/tmp/palpate-never-made")
+            finally:
+                os.chdir(here)
+        self.assertIn("the current folder", str(caught.exception))
 
 
 if __name__ == "__main__":

@@ -59,6 +59,7 @@ public:
             report.sequence     = ++answer.sequence;
             report.deviceTime   = now_;
             report.rendered     = force_;
+            report.command      = foreign ? std::uint16_t(foreignCommand_ += 1) : commandOf(late);
             if (stopped_) report.flags = report.flags | BridgeFlag::stopped;
             if (force_ != glm::dvec3(0)) report.flags = report.flags | BridgeFlag::motorsOn;
             const BridgeBytes bytes = encode(report);
@@ -88,9 +89,17 @@ public:
         return times_;
     }
 
-    BridgeAnswer answer; ///< the next one's; change it between ticks
+    BridgeAnswer answer;          ///< the next one's; change it between ticks
+    std::size_t  late    = 0;     ///< commands that wait on their way to the device
+    bool         foreign = false; ///< it follows the commands of another program
 
 private:
+    [[nodiscard]] std::uint16_t commandOf(std::size_t back) const
+    {
+        return commands_.size() > back ? commands_[commands_.size() - 1 - back].sequence : std::uint16_t(0);
+    }
+
+    std::uint16_t                                      foreignCommand_ = 40'000;
     FakeHidDevice&                                     device_;
     mutable std::mutex                                 mutex_;
     double                                             now_ = 0, heard_ = 0; ///< [s]

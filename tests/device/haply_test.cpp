@@ -437,6 +437,32 @@ TEST(HaplyEvents, ABrakeHoldsUntilItIsReleased)
     EXPECT_GT(bench.service.force().x, 0.9);
 }
 
+TEST(HaplyEvents, ThatEndTakeTheForceForGood)
+{
+    Bench bench;
+    bench.device->open();
+    const GovernedForce push = governed({1, 0, 0});
+    bench.run(0.1, push);
+    bench.service.endEvents();
+    const double since = bench.now;
+    bench.run(3, push);
+    EXPECT_EQ(bench.state.fault, DeviceFault::ownWatchdog) << "a brake would not be heard";
+    EXPECT_NE(std::string(bench.device->faultWords()).find("no events any more"), std::string::npos);
+    EXPECT_LE(bench.service.lastForce() - since, kZero);
+}
+
+TEST(HaplyDevice, AServiceThatTellsNoVelocityIsFollowedByItsPositions)
+{
+    double time = 0;
+    Bench  bench({.hasSpeed = false}, {}, [&](const glm::dvec3&, double dt) {
+        time += dt;
+        return glm::dvec3(0.1 * time, 0, 0);
+    });
+    bench.device->open();
+    bench.run(0.3, {});
+    EXPECT_NEAR(bench.state.velocity.x, 0.1, 0.02) << "[m/s]";
+}
+
 TEST(HaplyDevice, AForceThatIsNotFiniteIsNone)
 {
     Bench bench;

@@ -1,7 +1,9 @@
 #include "device/hid/hid_bridge.h"
 
 #include <algorithm>
+#include <chrono>
 #include <limits>
+#include <thread>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -79,6 +81,58 @@ TEST_F(Bridge, ItsPositionsAreAsOldAsUsbMakesThem)
 {
     bridge.open();
     EXPECT_EQ(after(3).age, 1e-3);
+}
+
+TEST_F(Bridge, CommandsThatWaitOnTheirWayAddToItsLagAndEndTheForceInTheEnd)
+{
+    bridge.open();
+    EXPECT_EQ(after(100, push).fault, DeviceFault::none);
+    firmware.late = 8;
+    // The bridge takes its times from the clock, and here all commands leave at once: they are sent a millisecond apart.
+    const auto slowly = [&](int ticks) {
+        HapticState state;
+        for (int n = 0; n < ticks; ++n) {
+            state = after(1, push);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return state;
+    };
+    HapticState state = slowly(60);
+    for (int n = 0; n < 5 && state.fault != DeviceFault::none; ++n)
+        state = slowly(60); // a machine that is busy is slower
+    EXPECT_EQ(state.fault, DeviceFault::none);
+    EXPECT_GE(state.age, 4e-3) << "8 commands of a millisecond and more each, less what is usual";
+    firmware.late = 40;
+    EXPECT_EQ(slowly(60).fault, DeviceFault::ownWatchdog);
+    EXPECT_FALSE(firmware.commands().back().enable);
+    firmware.late = 0;
+    EXPECT_EQ(slowly(10).fault, DeviceFault::none);
+}
+
+TEST_F(Bridge, ADeviceThatFollowsAnotherProgramGetsNoForce)
+{
+    bridge.open();
+    EXPECT_EQ(after(100, push).fault, DeviceFault::none);
+    firmware.foreign = true;
+    EXPECT_EQ(after(1, push).fault, DeviceFault::ownWatchdog);
+    EXPECT_FALSE(firmware.commands().back().enable);
+    EXPECT_NE(std::string(bridge.faultWords()).find("another program"), std::string::npos);
+    firmware.foreign = false;
+    EXPECT_EQ(after(2, push).fault, DeviceFault::none);
+    EXPECT_STREQ(bridge.faultWords(), "");
+}
+
+TEST_F(Bridge, NumbersThatWrapAroundAreOurs)
+{
+    bridge.open();
+    for (int n = 0; n < 140'000; ++n) ASSERT_EQ(after(1, push).fault, DeviceFault::none) << n;
+}
+
+TEST_F(Bridge, ADeviceThatNeverTellsTheCommandIsNotJudged)
+{
+    firmware.foreign = true;
+    bridge.open();
+    EXPECT_EQ(after(500, push).fault, DeviceFault::none);
 }
 
 TEST_F(Bridge, ForceGoesOutAndPositionComesIn)

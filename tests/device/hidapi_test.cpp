@@ -13,6 +13,7 @@
 
 #include "device/hid/bridge_report.h"
 #include "tests/device/hidapi_fake.h"
+#include "tests/support/temporary_folder.h"
 
 namespace palp {
 namespace {
@@ -165,6 +166,9 @@ TEST_F(Hidapi, APortWhoseProgramFallsSilentIsTakenOverThroughADescriptorOfItsOwn
     const auto port  = system.open(path);
     const auto bytes = [&](const BridgeBytes& report) { return std::vector(report.begin(), report.end()); };
     port->guard(kBridgeZero);
+    const auto second = system.open(path);
+    EXPECT_TRUE(
+        holds(refusalOf([&] { second->guard(kBridgeZero); }), {path, "is driven by another program", "end that"}));
 
     BridgeCommand push{.sequence = 7, .enable = true, .force = {1, 2, 3}, .watchdog = 0.02, .lights = 2};
     port->write(encode(push));

@@ -6,6 +6,8 @@
 # PALPATE_INSTANTS says how many instants (3) beside two that are always the same, when the window opens and while a hand is
 # recorded; PALPATE_LATEST by when [s].
 set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+. "$root/tests/support/sessions.sh"
 latest=${PALPATE_LATEST:-5} # [s] after the start: by then the hand has touched for two seconds
 unset PALPATE_LATEST
 palpate=$1 work=$2 instants=${PALPATE_INSTANTS:-3}
@@ -75,7 +77,33 @@ attempt() {
     "$palpate" export session-0001 --csv last.csv >/dev/null 2>err || { fail 'the recording cannot be read'; cat err; }
 }
 
+# device: a hand over UDP presses while the display goes; the last that it is told is no force.
+device() {
+    mkfifo number
+    Xvfb -displayfd 3 -noreset -screen 0 800x600x24 3>number 2>xvfb.log &
+    server=$!
+    read -r display <number
+    rm number
+    python3 "$root/samples/bridge_peer.py" 24304 "$1" >peer.txt &
+    peer=$!
+    DISPLAY=:$display "$palpate" view sample:sheet --points 1500 --size 320x240 --solver host --hand bridge:udp:24304 >out 2>err &
+    program=$!
+    sleep "$2"
+    kill -9 "$server"
+    wait "$server" 2>/dev/null
+    rm -f "/tmp/.X$display-lock" "/tmp/.X11-unix/X$display"
+    server=
+    wait $program
+    status=$?
+    program=
+    wait $peer
+    [ $status -eq 2 ] || fail "a device in the hand: exit status $status: $(cat err)"
+    was_pushed_and_let_go peer.txt || fail "a device in the hand: $(cat peer.txt)"
+}
+
 recorded=0
 for after in $(awk -v n="$instants" -v latest=$latest 'BEGIN { srand(); for (k = 0; k < n; ++k) print (k + rand()) / n * latest }') opened recorded; do attempt; done
+after=pushed
+! command -v python3 >/dev/null || device 20 6
 echo "$((instants + 2)) times the display went, $recorded times while a session was recorded; $failed times something was wrong"
 [ $failed -eq 0 ]

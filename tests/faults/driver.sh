@@ -9,7 +9,9 @@
 set -u
 palpate=$1 layer=$(realpath "$2") failing_files=$(realpath "$3") sanitizers=${4:-} instants=${PALPATE_INSTANTS:-4}
 unset PALPATE_INSTANTS # it is no key of a scene
+root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/checks.sh"
+. "$root/tests/support/sessions.sh"
 server=
 trap '[ -z "$server" ] || kill "$server"; rm -rf "$work"' EXIT
 seconds=1.5 # of a window; a sanitized one takes longer to draw its first panel
@@ -157,6 +159,24 @@ case $commands in
     done
     ;;
 esac
+
+# A driver that crashes beneath a session whose device pushes: the guardian tells the device zero.
+if [ -z "$sanitizers" ] && command -v python3 >/dev/null; then
+    peer_of() { python3 "$root/samples/bridge_peer.py" 24303 "$1" >peer.txt & }
+    device='run sample:sheet --points 2000 --cells 16 --solver lavapipe --hand bridge:udp:24303 --seconds 6'
+    peer_of 9
+    # shellcheck disable=SC2086
+    FAILING_LAYER_AS=crash FAILING_LAYER_AT=0 FAILING_LAYER_ONLY=vkQueueSubmit "$palpate" $device >out.txt 2>err.txt </dev/null # none
+    wait $!
+    submits=$(cat count)
+    was_pushed_and_let_go peer.txt && pass || complain "a device over UDP without a fault: $(cat peer.txt err.txt)"
+    peer_of 9
+    # shellcheck disable=SC2086
+    FAILING_LAYER_AS=crash FAILING_LAYER_AT=$((submits * 9 / 10)) FAILING_LAYER_ONLY=vkQueueSubmit "$palpate" $device >out.txt 2>err.txt </dev/null
+    status=$?
+    wait $!
+    [ $status -eq 134 ] && was_pushed_and_let_go peer.txt && pass || complain "a driver that crashed while a device pushed, exit $status: $(cat peer.txt err.txt)"
+fi
 
 # A driver keeps what it has compiled in files of its own. Where these cannot be written nobody feels it.
 unset VK_INSTANCE_LAYERS FAILING_LAYER_AS FAILING_LAYER_ONLY

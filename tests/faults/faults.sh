@@ -43,6 +43,7 @@ paint b.ply paint skin.ply --stroke at=0,0,0mm;radius=5mm;value=2MPa --out WHERE
 touch touched touch $sheet --out WHERE/touched
 render c.png render sample:skin --points 2000 --cells 32 --size 120x90 --out WHERE/c.png
 export d.csv export session --csv WHERE/d.csv
+info j.png info sample:skin --points 2000 --picture WHERE/j.png
 run recorded run $sheet --clock virtual --seconds 0.5 --record WHERE/recorded
 run_real recorded run $sheet --hand falcon-emulator --seconds 0.3 --record WHERE/recorded
 solve e.npy solve plate.json --solver host --out WHERE/e.npy
@@ -65,7 +66,7 @@ is_whole() {
         "$palpate" export "$2" --csv is.csv >/dev/null 2>&1 && "$palpate" export "whole/$1" --csv was.csv >/dev/null 2>&1 || return 1
         cut -d, -f1-13 is.csv >is && cut -d, -f1-13 was.csv >was && cmp -s is was
         ;;
-    run_real) "$palpate" export "$2" --csv is.csv >/dev/null 2>&1 && [ "$(wc -l <is.csv)" -gt 200 ] ;;
+    run_real) "$palpate" export "$2" --csv is.csv >/dev/null 2>&1 && [ "$(wc -l <is.csv)" -gt 50 ] ;; # a busy machine leaves out ticks
     study) [ "$(wc -l <"$2/P1/trials.csv")" -eq "$(wc -l <"whole/$1/P1/trials.csv")" ] && cmp -s "$2/P1/study.json" "whole/$1/P1/study.json" ;;
     touch) for file in "whole/$1"/*; do # one has times
         case $file in */touch.json) [ -s "$2/touch.json" ] ;; *) cmp -s "$file" "$2/$(basename "$file")" ;; esac || return 1

@@ -74,6 +74,50 @@ TEST(ForceGovernor, AnEnergyThatIsNotANumberIsTheForcesFault)
     }
 }
 
+TEST(ForceGovernor, AGripThatJumpsLosesTheForceAndEngagesAnew)
+{
+    Servo servo;
+    servo.pushing({0, 0, 5});
+    servo.in.position.x += 6e-3; // a hand that is 1.2 m/s fast moves by 1.2 mm
+    const GovernorOutput first = servo.tick();
+    EXPECT_TRUE(first.did(GovernorAction::jumped));
+    EXPECT_EQ(first.fault, GovernorFault::none);
+    EXPECT_LE(first.force.z, 4);
+    for (int n = 0; n < 5; ++n) servo.tick();
+    EXPECT_EQ(servo.tick().force, glm::dvec3(0));
+    EXPECT_EQ(servo.ticks(3000).force, glm::dvec3(0)) << "it is pressed in where the jump has left it";
+    servo.in.force = {};
+    servo.engaged();
+}
+
+/// In free space, and at once as deep inside of a body as no hand gets in a tick.
+TEST(ForceGovernor, AGripThatJumpsIntoABodyIsNotPushed)
+{
+    Servo servo;
+    servo.engaged();
+    servo.in.position.z -= 10e-3;
+    servo.in.force = {0, 0, 6};
+    for (int n = 0; n < 3000; ++n) ASSERT_EQ(servo.tick().force, glm::dvec3(0)) << n;
+}
+
+TEST(ForceGovernor, AFastHandAndAnAnswerThatComesLateAreNoJumps)
+{
+    Servo servo;
+    servo.engaged();
+    for (int n = 0; n < 100; ++n) {
+        servo.in.position.x += 1.1e-3;
+        ASSERT_FALSE(servo.tick().did(GovernorAction::jumped));
+    }
+    for (int n = 1; n <= 15; ++n) { // the device says nothing for 15 ms
+        servo.in.sinceAnswer     = 1e-3 * n;
+        servo.in.missedExchanges = n;
+        ASSERT_FALSE(servo.tick().did(GovernorAction::jumped));
+    }
+    servo.in.position.x += 16 * 1.1e-3;
+    servo.in.sinceAnswer = servo.in.missedExchanges = 0;
+    EXPECT_FALSE(servo.tick().did(GovernorAction::jumped));
+}
+
 TEST(ForceGovernor, AFaultStaysUntilTheOperatorResetsItAndThenEngagesAnew)
 {
     Servo servo;

@@ -21,7 +21,8 @@ void check(const std::string& json)
         palp::fuzzRead([&] { return palp::takeHaplyState(json, "049D", state); }) == palp::HaplyVerdict::good;
     ++(good ? palp::fuzzVerdicts.accepted : palp::fuzzVerdicts.refused);
     if (good)
-        palp::fuzzExpect(std::isfinite(glm::length(state.position) + glm::length(state.velocity) +
+        palp::fuzzExpect(std::isfinite(glm::length(state.position) +
+                                       glm::length(state.velocity.value_or(glm::dvec3(0))) +
                                        glm::length(state.rendered.value_or(glm::dvec3(0)))) &&
                          std::abs(glm::length(state.orientation) - 1) < 1e-6);
     for (const palp::HaplyDescription& device : palp::fuzzRead([&] { return palp::haplyDevices(json); }))

@@ -44,10 +44,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         palp::fuzzExpect(description.records.empty() && description.folder == path);
     });
     palp::fuzzRefusals([&] {
-        const auto ticks = palp::openTicks(path, false);
+        const auto ticks = palp::fuzzRead([&] { return palp::openTicks(path, false); });
         palp::fuzzExpect(ticks->rows() * 8 <= size); // a time at least, in each row
-        std::vector<palp::TickRecord> records(std::size_t(ticks->rows()));
-        ticks->read(records);
+        const auto records = palp::fuzzRead([&] {
+            std::vector<palp::TickRecord> read(std::size_t(ticks->rows()));
+            ticks->read(read);
+            return read;
+        });
+        palp::fuzzExpect(records.size() == ticks->rows());
     });
     return 0;
 }

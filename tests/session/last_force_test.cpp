@@ -106,7 +106,9 @@ TEST_F(LastForce, IsZeroWhenARealSessionIsStopped)
     RealSessionSettings settings{.seconds = 30, .onTick = notesForce()};
     settings.stop   = &stop_;
     settings.onView = [this](const SessionView&) { stop_ = pushing_.load(); };
+    const auto began = std::chrono::steady_clock::now();
     real(settings);
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(30)) << "or it was not stopped";
     expectZeroAfterAForce();
 }
 

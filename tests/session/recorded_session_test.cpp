@@ -249,8 +249,8 @@ TEST_F(SessionFolder, WhatItLacksIsSaid)
     EXPECT_EQ(readDescription(run).whyIncomplete, "");
     EXPECT_TRUE(holds(lacks("\"finished\": true", "\"finished\": false"), {"it has no end"}));
     EXPECT_EQ(lacks("\"stopped\": null", "\"stopped\": \"the disk\\u001b[31m was full\""), "the disk?[31m was full");
-    EXPECT_EQ(lacks("\"lost\": 0", "\"lost\": 12"), "12 ticks are missing in it");
-    EXPECT_EQ(lacks("\"markers_lost\": 0", "\"markers_lost\": 2"), "2 markers are missing in it");
+    EXPECT_EQ(lacks("\"lost\": 0", "\"lost\": 12"), "it lacks 12 ticks");
+    EXPECT_EQ(lacks("\"markers_lost\": 0", "\"markers_lost\": 2"), "it lacks 2 markers");
 }
 
 TEST_F(SessionFolder, OneClockAloneIsNoMomentOfTimeZero)

@@ -126,8 +126,8 @@ struct Found {
     double                begun    = 0;        ///< [counts/(N m)] in use until then
     bool                  isBefore = false;    ///< every command ran with those
     double                counts = 0, arm = 0; ///< [counts/(N m)], [kg]
-    std::optional<double> hold{};      ///< [s] empty: see whyNoHold
-    std::string           whyNoHold{}; ///< "not found: ..." or "not measured: ..."
+    std::optional<double> hold{};              ///< [s] empty: see whyNoHold
+    std::string           whyNoHold{};         ///< "not found: ..." or "not measured: ..."
 };
 
 /// Goes through all stages with an open Falcon. However it ends, the device is closed, so its last force is zero.
@@ -175,10 +175,9 @@ Found weigh(const CalibrateOptions& o, double mass, Bench& bench)
         constexpr double kHoldPatience = 150; // [s] some 40 silences, each after 2 s
         const bool       isLost        = ill > 1 || out.fault != GovernorFault::none;
         if (hold && (isLost || now > weighed + kHoldPatience)) { // the weighing counts all the same
-            found.whyNoHold = std::string("not measured: ") +
-                              (out.fault != GovernorFault::none ? name(out.fault)
-                               : isLost                         ? name(state.fault)
-                                                                : "it took longer than two and a half minutes");
+            found.whyNoHold = std::string("not measured: ") + (out.fault != GovernorFault::none ? name(out.fault)
+                                                               : isLost                         ? name(state.fault)
+                                                                        : "it took longer than two and a half minutes");
             break;
         }
         demandWell(state, ill, out.fault);
@@ -195,8 +194,8 @@ Found weigh(const CalibrateOptions& o, double mass, Bench& bench)
     found.arm    = calibration.armMass().value();
     if (hold) found.hold = hold->hold();
     if (!found.hold && found.whyNoHold.empty())
-        found.whyNoHold = hold && hold->fell() ? "not found: the grip fell, but not as one that is let go of"
-                                               : "not found: the grip did not fall within half a second without a packet";
+        found.whyNoHold = hold->fell() ? "not found: the grip fell, but not as one that is let go of"
+                                       : "not found: the grip did not fall within half a second without a packet";
     return found;
 }
 

@@ -47,9 +47,9 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
 
 /// Runs a session in real time, with a line that shows what the hand feels.
 /// \param clutch   see RealSessionSettings; may be null
-/// \param unheard  gets SessionRun::unheard
+/// \param run      gets `unheard`, and a warning where real-time rights are refused
 SessionSummary playLive(const SessionOptions& o, double seconds, const SessionParts& parts, SessionTap& tap,
-                        const OnTick& also, const std::atomic<bool>* clutch, std::uint64_t& unheard)
+                        const OnTick& also, const std::atomic<bool>* clutch, SessionRun& run)
 {
     const bool           line = isatty(STDERR_FILENO) != 0 && !o.json;
     TickRing<TickRecord> ring(also ? 4096 : 1); // four seconds; from the servo to this thread
@@ -67,7 +67,7 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     settings.onStart = [&](std::chrono::steady_clock::time_point start) { tap.begin(start); };
     settings.onTick  = [&, heard = bool(also)](const TickRecord& record) {
         tap.push(record);
-        if (heard && !ring.push(record)) ++unheard;
+        if (heard && !ring.push(record)) ++run.unheard;
     };
     settings.onView = [&, heard = bool(also)](const SessionView& view) {
         if (heard) drain();
@@ -78,6 +78,7 @@ SessionSummary playLive(const SessionOptions& o, double seconds, const SessionPa
     const SessionSummary summary = runReal(parts, settings, warning);
     if (also) drain();
     if (line) clearLine();
+    if (!warning.empty()) run.warnings.push_back(warning);
     if (!warning.empty() && !o.blind) warn({warning});
     return summary;
 }
@@ -268,7 +269,6 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     if (!o.blind) say(run.notes);
     if (o.blind && !o.handIsKnown) { // nothing of the object
         warn(hand.warnings);
-        say(hand.notes);
     }
     std::vector<TickStream*> outlets;
     for (const auto& stream : streams) outlets.push_back(stream.get());
@@ -279,7 +279,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     };
     if (markers) markers->listen([&tap](std::string_view text) { tap.mark(text); });
     if (markers && markers->hearsKeys()) sayKeys(o, hasClutch);
-    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick, &isClutched, run.unheard)
+    run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick, &isClutched, run)
                                               : playVirtual(parts, hand.seconds, each, &stop);
     markers.reset();
     if (recording) run.recorded = recording->finish();

@@ -8,7 +8,6 @@
 #include <functional>
 #include <iostream>
 #include <map>
-#include <set>
 #include <utility>
 
 #include <glm/geometric.hpp>
@@ -35,7 +34,8 @@ using study::Trial;
 using study::TrialRow;
 
 constexpr std::size_t kLongestLine = 1000; ///< [bytes] kept of an answer
-constexpr int         kMostStrange = 20;   ///< unknown answers in a row from input that is no terminal
+constexpr const char* kWarnings    = "warnings.txt";
+constexpr int         kMostStrange = 20; ///< unknown answers in a row from input that is no terminal
 
 /// A condition, ready to be touched.
 struct Felt {
@@ -127,28 +127,28 @@ public:
             paused = true;
             say("\nPaused after " + std::to_string(table_->rows().size()) + " of " + std::to_string(trials_.size()) +
                 " trials; run the same command to resume.\n");
-        } catch (const CheckFailed&) { // a force was stopped, which was said
+        } catch (...) {
             tellUnfelt();
-            keepWarnings();
+            tellWarnings();
             throw;
         }
         tellUnfelt();
-        keepWarnings();
-        return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv", warnings()};
+        tellWarnings();
+        return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv", warnings_};
     }
 
 private:
-    void                                   agree();
-    void                                   demandOurs() const;
-    void                                   tellUnfelt() const;
-    [[nodiscard]] std::vector<std::string> warnings() const;
-    void                                   keepWarnings() const;
-    TrialRow                               trial(std::size_t number);
-    std::string                            touch(std::size_t condition, const std::string& name, ForceTally& force);
-    [[nodiscard]] std::string              ask(const Task& task) const;
-    [[nodiscard]] std::string              line() const;
-    [[nodiscard]] std::string              answerAmong(const Answers& known, const std::string& wanted) const;
-    void                                   begin(const std::string& what) const;
+    void                      agree();
+    void                      demandOurs() const;
+    void                      tellUnfelt() const;
+    void                      keepWarnings(const std::vector<std::string>& sentences);
+    void                      tellWarnings() const;
+    TrialRow                  trial(std::size_t number);
+    std::string               touch(std::size_t condition, const std::string& name, ForceTally& force);
+    [[nodiscard]] std::string ask(const Task& task) const;
+    [[nodiscard]] std::string line() const;
+    [[nodiscard]] std::string answerAmong(const Answers& known, const std::string& wanted) const;
+    void                      begin(const std::string& what) const;
     void say(const std::string& text) const { (run_.json ? std::cerr : std::cout) << text << std::flush; }
 
     const StudyRun&                  run_;
@@ -159,8 +159,7 @@ private:
     std::optional<FolderLock>        lock_;
     std::optional<study::TrialTable> table_;
     bool                             handIsKnown_ = false; ///< what there is to say of it was said
-    /// Numbers of trials, by what their sessions warned of: participants must not read it, which says what they touch.
-    std::map<std::string, std::set<std::size_t>> warned_;
+    std::vector<std::string>         warnings_;            ///< of the sessions so far, with their trials
 };
 
 /// Returns the hand without the port of its device, which may change from day to day.
@@ -176,7 +175,10 @@ std::vector<std::filesystem::path> othersIn(const std::filesystem::path& study)
     std::error_code                    failure;
     for (std::filesystem::directory_iterator entry(study, failure), end; !failure && entry != end;
          entry.increment(failure))
-        if (isThere(entry->path() / study::kStudyFile)) found.push_back(entry->path());
+        if (std::error_code hidden; std::filesystem::exists(entry->path() / study::kStudyFile, hidden))
+            found.push_back(entry->path());
+        else if (hidden && hidden != std::errc::permission_denied) // as lost+found of a disk, which is nobody's study
+            throw Error(entry->path().string() + ": cannot be read: " + hidden.message());
     if (failure && failure != std::errc::no_such_file_or_directory)
         throw Error(study.string() + ": cannot be read: " + failure.message());
     return found;
@@ -245,30 +247,25 @@ void Sitting::tellUnfelt() const
                       << "its answer is not valid\n";
 }
 
-std::vector<std::string> Sitting::warnings() const
-{
-    std::vector<std::string> all;
-    for (const auto& [sentence, trials] : warned_) {
-        std::string which;
-        for (const std::size_t trial : trials) which += (which.empty() ? "" : ", ") + std::to_string(trial);
-        all.push_back((trials.size() > 1 ? "trials " : "trial ") + which + ": " + sentence);
-    }
-    return all;
-}
-
-/// Adds to a file what the participant must not read: it says what is touched.
-void Sitting::keepWarnings() const
+/// Adds to a file what the participant must not read: it says what is touched. It is on the disk before the question is asked.
+void Sitting::keepWarnings(const std::vector<std::string>& sentences)
 {
     constexpr std::size_t kMost = std::size_t(16) << 20; // [bytes]
-    if (warned_.empty()) return;
-    const std::filesystem::path path = folder_ / "warnings.txt";
-    const std::string before = isThere(path) ? readWhole(path, kMost, "the warnings of a participant's trials") : "";
-    writeFileWhole(path, [&](std::ostream& file) {
-        file << before;
-        for (const std::string& line : warnings()) file << line << "\n";
-    });
-    std::cerr << "palpate: warning: who runs the study should read " << path.string()
-              << ", which the participant should not\n";
+    if (sentences.empty()) return;
+    const std::filesystem::path path = folder_ / kWarnings;
+    std::string text = isThere(path) ? readWhole(path, kMost, "the warnings of a participant's trials") : "";
+    for (const std::string& sentence : sentences) {
+        warnings_.push_back("trial " + std::to_string(table_->rows().size() + 1) + ": " + sentence);
+        text += warnings_.back() + "\n";
+    }
+    writeFileWhole(path, [&](std::ostream& file) { file << text; });
+}
+
+void Sitting::tellWarnings() const
+{
+    if (!warnings_.empty())
+        warn({"who runs the study should read " + (folder_ / kWarnings).string() +
+              ", which the participant should not"});
 }
 
 std::string Sitting::line() const
@@ -336,7 +333,7 @@ std::string Sitting::touch(std::size_t condition, const std::string& name, Force
     options.handIsKnown      = std::exchange(handIsKnown_, true);
     const SessionRun session = runSession(plan_.conditions[condition].scene, felt_[condition].loaded, options,
                                           [&](const TickRecord& record) { force.add(record); });
-    for (const std::string& sentence : session.warnings) warned_[sentence].insert(table_->rows().size() + 1);
+    keepWarnings(session.warnings);
     if (session.interrupted) throw Paused();
     if (!session.takeover.empty()) std::cerr << "palpate: " << session.takeover << "\n";
     try {

@@ -21,7 +21,7 @@ struct StudyProgress {
     std::size_t              done = 0, trials = 0; ///< numbers of trials
     bool                     paused = false;
     std::filesystem::path    table;
-    std::vector<std::string> warnings{}; ///< of this run's sessions, each with its trials: for who runs the study
+    std::vector<std::string> warnings{}; ///< of this run's sessions, each with its trial: for who runs the study
 };
 
 /// Continues where the participant's table ends: touches, asks at the keyboard and appends a row, until the last trial

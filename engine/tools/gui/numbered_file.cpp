@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "engine/core/contract.h"
+#include "engine/core/file.h"
 
 namespace palp {
 
@@ -12,7 +13,7 @@ std::filesystem::path unusedPath(const std::string& stem, const std::string& ext
         char number[16];
         std::snprintf(number, sizeof number, "-%04d", n);
         const std::filesystem::path path = stem + number + extension;
-        if (!std::filesystem::exists(path)) return path;
+        if (!isThere(path)) return path;
     }
     throw Error("there are 9999 files called " + stem + "-NNNN" + extension + " here; move some away");
 }

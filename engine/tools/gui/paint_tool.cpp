@@ -83,9 +83,10 @@ bool PaintTool::save(const Stage& stage, const std::filesystem::path& folder)
         const std::string stem     = cloud.starts_with("sample:") ? cloud.substr(7) : source.stem().string();
         const auto        target   = unusedPath((folder / (stem + "-painted")).string(), ".ply");
         std::string       property = "stiffness";
-        if (isPly) {
+        const auto        file     = asOpened(stage);
+        if (isPly && file) {
             property = repaintPly(source, stage.scene().reading, stage.painted().cloud(), target).property;
-        } else if (const auto file = asOpened(stage)) {
+        } else if (file) {
             writeCloud(target, stage.painted().cloud(), fieldsBeside(*file, file->stiffening), {.faces = file->faces});
         } else {
             writeCloud(target, stage.painted().cloud());

@@ -39,7 +39,7 @@ good 'as a table' hunt --score session
 holds 'found 3 of 4 nodules, 1 false alarm;'
 cp -r session cut && sed -i 's/"lost": 0/"lost": 7/' cut/session.json
 good 'one that lacks ticks' hunt --score cut
-grep -q 'cut is not complete: 7 ticks are missing' err.txt && pass || complain "a score of a part: $(cat err.txt)"
+grep -q 'cut is not complete: it lacks 7 ticks' err.txt && pass || complain "a score of a part: $(cat err.txt)"
 good 'in real time' hunt "$scene" --hand "$hand" --seconds 1
 holds 'nothing was declared'
 good 'hidden anew' hunt "$scene" --hand "$hand" --clock virtual --hunt-seed 7 --json
@@ -86,7 +86,7 @@ sed 's/1\.6/1.4/' plan.json >short.json
 table=study/P01/trials.csv
 { printf 'x\n\n'; seq 11 30; } >input # a line that does not begin, one that does, 20 that answer nothing
 "$palpate" study plan.json --participant P09 --out strange --clock virtual <input >out.txt 2>err.txt
-[ $? -eq 2 ] && grep -q '20 other lines in a row' err.txt && [ "$(wc -l <err.txt)" -eq 1 ] && pass || complain "strange answers: $(cat err.txt)"
+[ $? -eq 2 ] && grep -q '20 other lines in a row' err.txt && [ "$(grep -vc 'strange/P09/warnings.txt' err.txt)" -eq 1 ] && pass || complain "strange answers: $(cat err.txt)"
 holds 'please press Enter alone'
 [ "$(wc -l <strange/P09/trials.csv)" -eq 1 ] && pass || complain 'an answer that was none is in the table'
 mkfifo quiet # Ctrl-C while the keyboard is waited for
@@ -113,8 +113,8 @@ printf 'P01,2,1,real,rating,SECRETS' >>$table # as a crash within a row leaves i
 mkdir -p study/P01/trial_002 && echo '{}' >study/P01/trial_002/session.json # and within a session
 printf '\n5\n\n\n1\n' >input
 good 'and goes on after a crash' study plan.json --participant P01 --out study --clock virtual --json
-for word in '"done": 3' '"paused": false' '"trials 2, 3: the points are '; do holds "$word"; done
-grep -q '^trial 1: ' study/P01/warnings.txt && grep -q '^trials 2, 3: ' study/P01/warnings.txt && pass || complain "the warnings: $(cat study/P01/warnings.txt)"
+for word in '"done": 3' '"paused": false' '"trial 2: the points are ' '"trial 3: the points are '; do holds "$word"; done
+grep -q '^trial 1: ' study/P01/warnings.txt && grep -q '^trial 3: ' study/P01/warnings.txt && pass || complain "the warnings: $(cat study/P01/warnings.txt)"
 cut -d, -f1-3 $table >columns.txt
 printf 'participant,trial,block\nP01,1,1\nP01,2,1\nP01,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated: $(cat $table)"
 grep -q 'P01/trial_002_again2' $table && pass || complain 'the session that was cut was written over'

@@ -157,11 +157,10 @@ without "$palpate" solve plate.json --solver host && [ ! -s err.txt ] && passed=
 good 'solve where there is only software' solve plate.json --json --out auto.npy
 holds '"solver": "host"'
 holds '"note": null'
+[ ! -s err.txt ] && cmp -s auto.npy host.npy && passed=$((passed + 1)) || complain "auto is not the host: $(cat err.txt)"
 without "$palpate" touch sample:skin --points 3000 --cells 32 --solver host --out undrawn && grep -q 'warning .*a picture could not be drawn' out.txt &&
     grep -q 'a picture could not be drawn and says so in its place: ' undrawn/touch.json && grep -q 'could not be drawn' undrawn/surface.svg && passed=$((passed + 1)) ||
     complain "pictures that are none are not warned of: $(cat out.txt err.txt)"
-good 'solve where there is only software' solve plate.json --json --out auto.npy
-[ ! -s err.txt ] && cmp -s auto.npy host.npy && passed=$((passed + 1)) || complain "auto is not the host: $(cat err.txt)"
 PALPATE_HOST_ISA=sse9
 export PALPATE_HOST_ISA
 for command in 'solve plate.json' devices; do
@@ -419,7 +418,7 @@ long=$(printf '%300s' | tr ' ' a)
 bad 'a hand whose name no file can have' 'File name too long' run scene.json --hand "$long" --clock virtual
 bad 'a scene whose name no file can have' 'File name too long' run "$long" --clock virtual
 mkdir gone && { (cd gone && rmdir ../gone && "$palpate" run "$place/scene.json" --clock virtual --seconds 0.1 --record "$place/elsewhere" >../out.txt 2>"$place/err.txt")
-    [ $? -eq 2 ] && grep -q '^palpate: the current folder: cannot be read' err.txt && passed=$((passed + 1)) || complain "a folder that is gone: $(cat err.txt)"; }
+    [ $? -eq 2 ] && grep -q '^palpate: the current folder: ' err.txt && passed=$((passed + 1)) || complain "a folder that is gone: $(cat err.txt)"; }
 bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
 python3 -c "
 # the lowest bit of the last tick's force z, 124 bytes before the end
@@ -434,7 +433,7 @@ good 'a table of a recording that stopped' export lacking --csv lacking.csv
 grep -q 'lacking is not complete: the disk was full' err.txt && passed=$((passed + 1)) || complain "a table of a part: $(cat err.txt)"
 sed -i 's/"stopped": "the disk was full"/"stopped": null/; s/"markers_lost": 0/"markers_lost": 3/' lacking/session.json
 good 'replay of a recording without some markers' replay lacking
-grep -q 'lacking is not complete: 3 markers are missing' err.txt && passed=$((passed + 1)) || complain "a replay of a part: $(cat err.txt)"
+grep -q 'lacking is not complete: it lacks 3 markers' err.txt && passed=$((passed + 1)) || complain "a replay of a part: $(cat err.txt)"
 
 # --- a Falcon weighs a mass: an emulated one, of 4200 counts per N m and an arm of 210 g
 # near KEY EXPECTED SHARE, of tests/device/falcon_calibration_test.cpp

@@ -14,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
+#include "engine/tools/gui/numbered_file.h"
 #include "tests/support/temporary_folder.h"
 
 // A workbench without a window: what happens in one is a list of steps, what it shows is counted.
@@ -419,7 +420,7 @@ TEST_F(WorkbenchTest, PaintThatNobodySavedIsSavedWhenTheWindowCloses)
     EXPECT_FALSE(report.hasLost);
 }
 
-/// A folder of the environment, for a time.
+/// A variable of the environment, for a time.
 class Variable {
 public:
     Variable(const char* name, const std::filesystem::path& value) : name_(name)
@@ -489,6 +490,29 @@ TEST_F(WorkbenchTest, PaintIsSavedWhenTheScreenIsLost)
     EXPECT_TRUE(holds(refusalOf([this] { static_cast<void>(run()); }), {"the screen is lost"}));
     EXPECT_TRUE(std::filesystem::exists("sheet-painted-0001.ply"));
     EXPECT_TRUE(complainedOf("saved sheet-painted-0001.ply")) << complaints_;
+}
+
+TEST_F(WorkbenchTest, PaintOfAFileThatIsGoneIsSavedWithItsPoints)
+{
+    settings_.values = {{"cells", "32"}};
+    settings_.what   = "scan.ply";
+    writeCloud("scan.ply", loadCloud(sceneOf("sample:sheet", {{"points", "2000"}, {"stiffness", kRamp}})).cloud);
+    wait("the object", [this] { return screen_.points == 2000; });
+    press('B');
+    step("a dab", [](WindowInput& input) { input.left = true; });
+    step("its disk is pulled out", [](WindowInput&) { std::filesystem::remove("scan.ply"); });
+    rest(0.1);
+    const WorkbenchReport report = run();
+
+    EXPECT_FALSE(report.hasLost);
+    EXPECT_EQ(readCloud("scan-painted-0001.ply", {}).cloud.size(), 2000U);
+    EXPECT_TRUE(complainedOf("scan.ply has changed or gone")) << complaints_;
+}
+
+TEST_F(WorkbenchTest, AFolderThatCannotBeAskedIsOneSentence)
+{
+    EXPECT_TRUE(holds(refusalOf([] { static_cast<void>(unusedPath(std::string(300, 'a'), ".ply")); }),
+                      {"-0001.ply: cannot be read: File name too long"}));
 }
 
 TEST_F(WorkbenchTest, ASavedObjectKeepsItsProperties)

@@ -20,6 +20,7 @@ import ctypes
 import json
 import operator
 import os
+import threading
 import warnings
 from pathlib import Path
 from typing import Any, NamedTuple, Optional, Union
@@ -504,11 +505,12 @@ class Object:
 class Session:
     """A session that a loop of yours steps about a thousand times a second; made by Object.session().
 
-    It may be a context manager. step() belongs to one thread, deformed() to one other.
+    It may be a context manager. step() belongs to one thread, deformed() to one other; close() may come from any.
     """
 
     def __init__(self, of: Object, mass: float, damping: float, force: float, stiffness: float) -> None:
         self._handle = _void()
+        self._stepping, self._drawing = threading.Lock(), threading.Lock()  # nothing is freed while another thread uses it
         self._count = len(of)
         self._sequence = ctypes.c_uint64(0)
         self._hand, self._answer = _Hand(), _Answer()
@@ -530,9 +532,12 @@ class Session:
             warnings.warn(f"{lost} ticks of the recording were lost", RuntimeWarning, stacklevel=2)
 
     def _destroy(self) -> None:
-        handle, self._handle = getattr(self, "_handle", None), None
-        if handle:
-            _lib.palpate_session_destroy(handle)
+        if not getattr(self, "_handle", None):
+            return
+        with self._stepping, self._drawing:
+            handle, self._handle = self._handle, None
+            if handle:
+                _lib.palpate_session_destroy(handle)
 
     __del__ = _destroy
     __copy__ = __deepcopy__ = __reduce_ex__ = _no_pickle
@@ -545,8 +550,13 @@ class Session:
     def __enter__(self) -> "Session":
         return self
 
-    def __exit__(self, *_: Any) -> None:
-        self.close()
+    def __exit__(self, kind: Any, *_: Any) -> None:
+        try:
+            self.close()
+        except Error as error:  # what ended the block comes first
+            if kind is None:
+                raise
+            warnings.warn(str(error), RuntimeWarning, stacklevel=2)
 
     def step(self, time: float, position: ArrayLike, velocity: ArrayLike = (0, 0, 0), buttons: int = 0,
              age: float = 0) -> Answer:
@@ -563,7 +573,8 @@ class Session:
         except (TypeError, ValueError):
             raise Error("step: expected a time, three numbers of a position and of a velocity, whole buttons and an "
                         f"age, found {time!r}, {position!r}, {velocity!r}, {buttons!r}, {age!r}") from None
-        _check(_lib.palpate_session_step(self._open(), now, ctypes.byref(hand), ctypes.byref(answer)))
+        with self._stepping:
+            _check(_lib.palpate_session_step(self._open(), now, ctypes.byref(hand), ctypes.byref(answer)))
         flags = answer.flags
         return Answer(np.array(answer.force), bool(flags & 1), bool(flags & 2), bool(flags & 4), bool(flags & 8),
                       np.array(answer.proxy), np.array(answer.normal), answer.depth, answer.stiffness)
@@ -572,24 +583,28 @@ class Session:
     def words(self) -> str:
         """Why the last tick had no force; empty while forces flow."""
         text = ctypes.create_string_buffer(1024)
-        _check(_lib.palpate_session_words(self._open(), text, len(text)))
+        with self._stepping:
+            _check(_lib.palpate_session_words(self._open(), text, len(text)))
         return text.value.decode("utf-8", "replace")
 
     def deformed(self) -> Optional[np.ndarray]:
         """Returns every point under the present force, (n, 3) [m], if the plate has a new answer; else None."""
         before = self._sequence.value
         xyz = np.empty((self._count, 3))
-        _check(_lib.palpate_session_deformed(self._open(), _address(xyz), self._count, ctypes.byref(self._sequence)))
+        with self._drawing:
+            _check(_lib.palpate_session_deformed(self._open(), _address(xyz), self._count, ctypes.byref(self._sequence)))
         return xyz if self._sequence.value != before else None
 
     def record(self, folder: Union[str, os.PathLike]) -> None:
         """Records from the next tick on into a new folder."""
-        _check(_lib.palpate_session_record(self._open(), _bytes(folder, "folder")))
+        with self._stepping:
+            _check(_lib.palpate_session_record(self._open(), _bytes(folder, "folder")))
 
     def stop_recording(self) -> "tuple[int, int]":
         """Ends the recording; returns how many ticks are on disk, and how many are lost."""
         ticks, lost = ctypes.c_uint64(), ctypes.c_uint64()
-        _check(_lib.palpate_session_stop_recording(self._open(), ctypes.byref(ticks), ctypes.byref(lost)))
+        with self._stepping:
+            _check(_lib.palpate_session_stop_recording(self._open(), ctypes.byref(ticks), ctypes.byref(lost)))
         return ticks.value, lost.value
 
 
@@ -649,7 +664,10 @@ def read_recording(folder: Union[str, os.PathLike]) -> "tuple[np.ndarray, dict]"
         raise Error(f"{place}: expected the folder of a recorded session, found {error}") from None
     if not isinstance(about, dict):
         raise Error(f"{place}: expected session.json to be an object, found {type(about).__name__}")
-    missing = about.get("stopped") or (f"{about['lost']} ticks were lost" if about.get("lost") else None)
+    missing = about.get("stopped")
+    for key, what in (("lost", "ticks"), ("markers_lost", "markers")):
+        if about.get(key) and not missing:
+            missing = f"it lacks {about[key]} {what}"
     if not about.get("finished"):
         missing = "its program was killed, or still records"
     if missing:
