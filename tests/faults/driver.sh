@@ -98,12 +98,13 @@ else
     echo 'skipped: a window whose driver fails, this build opens none'
 fi
 
-felt=
+# shellcheck disable=SC2046
+"$palpate" $(arguments touch) >out.txt 2>err.txt || { cat err.txt; exit 1; }
+felt=$(number felt_stiffness out.txt)
 for command in ${chosen:-$commands}; do
     # shellcheck disable=SC2046
     "$palpate" $(arguments $command) >out.txt 2>err.txt || { cat err.txt; exit 1; }
     calls=$(cat count)
-    [ $command != touch ] || felt=$(number felt_stiffness out.txt)
     [ $command != render ] || mv picture.png good.png
     [ "$calls" -gt 40 ] || complain "$command makes $calls calls only: are they counted?"
     for as in $ways; do

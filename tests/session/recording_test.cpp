@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <iostream>
+#include <random>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -361,12 +362,14 @@ TEST(RecordingChild, DISABLED_PushesUntilItIsKilled)
 }
 
 /// Milliseconds of pushed records that a kill costs.
-double lossOfAKill(const std::filesystem::path& place, int afterTicks)
+/// \param later  [s] after that tick
+double lossOfAKill(const std::filesystem::path& place, int afterTicks, double later)
 {
     std::filesystem::create_directory(place);
     Shared* const shared = sharedIn(place);
     const pid_t   child  = start("RecordingChild.DISABLED_PushesUntilItIsKilled", place);
     while (shared->pushed < afterTicks) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    std::this_thread::sleep_for(std::chrono::duration<double>(later));
     const std::int64_t killed = nanoseconds();
     ::kill(child, SIGKILL);
     EXPECT_EQ(exitOf(child), -SIGKILL);
@@ -387,9 +390,11 @@ TEST(Recording, AKillCostsAtMostTenMilliseconds)
     const char* const   asked  = std::getenv("PALPATE_INSTANTS"); // 500 take three minutes
     const int           rounds = std::max(asked ? std::atoi(asked) : 0, 9);
     std::vector<double> losses;
+    std::mt19937        random(7);
     for (int round = 0; round < rounds; ++round) {
         const TemporaryFolder folder;
-        losses.push_back(lossOfAKill(folder / "one", 60 + 37 * round % 331));
+        const int             ticks = std::uniform_int_distribution(60, 390)(random);
+        losses.push_back(lossOfAKill(folder / "one", ticks, std::uniform_real_distribution(0.0, 4e-3)(random)));
     }
 
     std::ranges::sort(losses);
@@ -555,7 +560,7 @@ TEST(Recording, NumpyReadsAKilledSession)
 {
     if (!hasNumpy()) GTEST_SKIP() << "no python3 with numpy; the other tests read the files by our own reader";
     const TemporaryFolder folder;
-    static_cast<void>(lossOfAKill(folder / "killed", 300));
+    static_cast<void>(lossOfAKill(folder / "killed", 300, 0));
     const auto script = folder.write("check.py", R"(
 import json, sys, numpy
 columns = json.load(open(sys.argv[1] + '/session.json'))['columns']
