@@ -223,7 +223,8 @@ typedef struct palpate_hand {
     size_t   size;        /**< of this struct, as PALPATE_INIT sets it */
     double   position[3]; /**< of the haptic interface point [m] */
     double   velocity[3]; /**< filtered [m/s]; all 0: taken from the positions of the last 15 ms */
-    double   age;         /**< of the position [s] */
+    double   age; /**< of the position [s]; of one that is repeated until a tracker's next it grows, or that next one may
+                       count as a jump: more than 1 mm and 4 m/s since the last takes the force */
     uint32_t buttons;     /**< bit 0, held for 20 ms, clears a fault of the governor */
     uint32_t absent;      /**< not 0: the device has no position now; no force flows */
 } palpate_hand;

@@ -562,6 +562,9 @@ class Session:
              age: float = 0) -> Answer:
         """Runs one tick. time [s] rises; position (3,) [m], velocity (3,) [m/s]; age [s] of the position.
 
+        A velocity of zero is taken from the positions. A position that is repeated until a tracker's next one states its
+        growing age: more than 1 mm and 4 m/s since the last one is a jump, which takes the force until the hand was lifted.
+
         A hand that is not finite gives zero force and bad_input, and no exception.
         """
         hand, answer = self._hand, self._answer
