@@ -528,9 +528,9 @@ TEST_F(WorkbenchTest, ASavedObjectKeepsItsProperties)
 
 TEST_F(WorkbenchTest, ASavedObjectKeepsItsFaces)
 {
-    std::ofstream file("part.obj");
-    for (const glm::dvec3& p : loadCloud(sceneOf("sample:sheet", {{"points", "2000"}})).cloud.positions())
-        file << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+    const LoadedCloud sheet = loadCloud(sceneOf("sample:sheet", {{"points", "2000"}}));
+    std::ofstream     file("part.obj");
+    for (const glm::dvec3& p : sheet.cloud.positions()) file << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
     file << "f 1 2 3\n";
     file.close();
     settings_.values = {{"scatter", "off"}, {"length_unit", "m"}};
