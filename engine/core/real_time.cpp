@@ -69,6 +69,15 @@ double timeAsleep() noexcept
 #endif
 }
 
+double SleepWatch::slept() noexcept
+{
+    constexpr double kLeast = 0.05; // [s] no machine wakes within less; two clocks are not read at once
+    const double     since  = timeAsleep() - asleep_;
+    if (!(since > kLeast)) return 0;
+    asleep_ += since;
+    return since;
+}
+
 Metronome::Clock::time_point Metronome::wait() noexcept
 {
     next_ += period_;

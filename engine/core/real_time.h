@@ -13,6 +13,17 @@ namespace palp {
 /// does not count. A thread that is interrupted between two clocks is off by that long. 0 where the system does not say.
 [[nodiscard]] double timeAsleep() noexcept;
 
+/// Tells a loop that its machine was suspended: the hand is elsewhere then, and the loop's own clock has stood still.
+class SleepWatch {
+public:
+    /// Returns for how long the machine slept since the last call [s]; 0: it did not.
+    [[nodiscard]] double slept() noexcept;
+    void                 restart() noexcept { asleep_ = timeAsleep(); } ///< forgets what it slept since
+
+private:
+    double asleep_ = timeAsleep(); ///< [s]
+};
+
 /// A clock of instants at a fixed distance, for which a thread waits one after the other.
 ///
 /// A late thread does not catch up: instants that have passed by more than a period are omitted and counted.

@@ -120,20 +120,18 @@ private:
 /// Runs the servo.
 void RealSession::servoThread()
 {
-    constexpr double kShare  = 0.01; // of the newest tick in the mean that is shown [1]
-    constexpr double kAsleep = 0.05; // [s] no machine wakes within less; two clocks are not read at once
-    warning_                 = askForRealTime();
-    Metronome metronome{std::chrono::microseconds(1000)};
-    auto      start = metronome.wait(); // asking may take a quarter of a second
-    double    last = 0, period = kTick, asleep = timeAsleep();
-    Stopping  stopping;
+    constexpr double kShare = 0.01; // of the newest tick in the mean that is shown [1]
+    warning_                = askForRealTime();
+    Metronome  metronome{std::chrono::microseconds(1000)};
+    auto       start = metronome.wait(); // asking may take a quarter of a second
+    double     last = 0, period = kTick;
+    SleepWatch sleep;
+    Stopping   stopping;
     if (settings_.onStart) settings_.onStart(start);
     for (;;) {
         const auto   now  = metronome.wait();
         const double time = Seconds(now - start).count(), dt = time - last;
-        // A machine that was suspended: the hand is elsewhere, and the clock has stood still.
-        const double slept = timeAsleep() - asleep, pause = slept > kAsleep ? slept : 0;
-        asleep += pause;
+        const double pause = sleep.slept();
         if (time >= settings_.seconds || shared_.over || (settings_.stop && *settings_.stop)) break;
         last = lastTick_ = time;
         period += (dt - period) * kShare;
@@ -151,8 +149,8 @@ void RealSession::servoThread()
         const Clock::duration stopped = stopping.stopAtZero(force_.governor().force());
         start += stopped;
         stopped_ += stopped.count();
-        if (stopped.count() > 0) asleep = timeAsleep(); // part of the stop, after which the hand engages anew
-        if (isFinal(state.fault)) break;                // it does not come back without close() and open()
+        if (stopped.count() > 0) sleep.restart(); // part of the stop, after which the hand engages anew
+        if (isFinal(state.fault)) break;          // it does not come back without close() and open()
     }
 }
 

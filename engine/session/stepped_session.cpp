@@ -46,8 +46,8 @@ struct SteppedSession::Impl {
     TickRecord               last{};
     Hand                     hand{};       ///< the last good one
     VelocityFilter           moved{15e-3}; ///< [s] as drivers of devices take it
-    double                   time   = 0;   ///< [s] of the last tick
-    double                   asleep = timeAsleep();
+    double                   time = 0;     ///< [s] of the last tick
+    SleepWatch               sleep;
     bool                     begun  = false;
     bool                     zeroed = false; ///< a bad tick gave no force, until the governor gives none either
     std::uint64_t            steps  = 0;
@@ -78,14 +78,10 @@ SteppedSession::~SteppedSession() = default;
 const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
 {
     constexpr double kNominal = 1e-3; // [s] of the first tick, and of one whose time is not good
-    constexpr double kAsleep  = 0.05; // [s] no machine wakes within less
     Impl&            s        = *impl_;
     const bool       rises    = std::isfinite(time) && (!s.begun || time > s.time);
     const bool       good     = rises && isGood(given);
-    const double     slept    = timeAsleep() - s.asleep; // a machine that was suspended: the hand is elsewhere
-    const double     pause    = slept > kAsleep ? slept : 0;
-    const double     dt       = (s.begun && rises ? time - s.time : kNominal) + pause;
-    s.asleep += pause;
+    const double     dt       = (s.begun && rises ? time - s.time : kNominal) + s.sleep.slept();
     if (rises) s.time = time;
     s.begun = true;
     ++s.steps;

@@ -194,6 +194,24 @@ TEST(CInterface, AHandThatJumpsIsNotPushed)
     EXPECT_EQ(go(300, -10e-3), 0);
 }
 
+/// By tests/faults/machine.sh, whose clocks say some seconds after the start that the machine slept.
+TEST(CInterfaceChild, DISABLED_AHostWhoseMachineSleepsLosesTheForce)
+{
+    const Object   object;
+    const Session  session(object);
+    double         felt = 0;
+    palpate_answer last{};
+    for (int n = 0; n < 12'000 && !(last.flags & PALPATE_STOPPED); ++n) {
+        felt = std::max(felt, last.force[2]);
+        last = session.step(1e-3 * n, heightAt(1e-3 * n));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_GT(felt, 0.1) << "or it shows nothing [N]";
+    EXPECT_EQ(last.fault, 6U) << "the loop has stalled";
+    for (int n = 0; n < 20; ++n) last = session.step(20 + 1e-3 * n, heightAt(20));
+    EXPECT_EQ(last.force[2], 0);
+}
+
 TEST(CInterface, AfterABadTickTheForceDoesNotComeBackAtOnce)
 {
     const Object  object;

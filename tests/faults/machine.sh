@@ -1,9 +1,9 @@
 #!/bin/sh
 # Faults of the machine beneath a whole session: clocks that jump, no threads and processes left, a single core, huge pages;
 # and the ports that a session opens, which are none unless they are asked for. Arguments: the program, the library of
-# jumping_clock.cpp, and the build's sanitizers, which bring clocks and threads of their own: those parts are omitted then.
+# jumping_clock.cpp, the tests of the C interface, and the build's sanitizers, which bring clocks and threads of their own: those parts are omitted then.
 set -u
-palpate=$1 jump=$(realpath "$2") sanitizers=${3:-}
+palpate=$1 jump=$(realpath "$2") host=$(realpath "$3") sanitizers=${4:-}
 root=$(cd "$(dirname "$0")/../.." && pwd)
 . "$(dirname "$0")/checks.sh"
 . "$root/tests/support/sessions.sh"
@@ -55,6 +55,10 @@ else
     { [ $status -eq 1 ] && grep -q 'the governor stopped the force' err.txt && pass; } || complain "$name: exit $status: $(cat out.txt err.txt)"
     steps | awk '$1 > 0.5 && $1 < 1.8 && ($2 != 0 || $3 != 0 || $4 != 0) { pressed = 1 } $1 > 2.6 && ($2 != 0 || $3 != 0 || $4 != 0) { bad = 1 } END { exit bad || !pressed || $1 < 3 }' &&
         pass || complain "$name: a force is left half a second later, or there was none before"
+    # The same of a host with a loop of its own.
+    env LD_PRELOAD="$jump" JUMPING_CLOCK=sleep JUMPING_CLOCK_AFTER=4 JUMPING_CLOCK_BY=20 \
+        "$host" --gtest_also_run_disabled_tests --gtest_filter='*AHostWhoseMachineSleeps*' >out.txt 2>&1 && grep -q 'PASSED.* 1 test' out.txt && pass ||
+        complain "a host whose machine slept: $(tail -n 20 out.txt)"
     # All clocks run on: from the jump on there is no force, and a sentence says why.
     # shellcheck disable=SC2086
     session 'all clocks jump by 20 s' env LD_PRELOAD="$jump" JUMPING_CLOCK=all JUMPING_CLOCK_AFTER=2 JUMPING_CLOCK_BY=20 -- \

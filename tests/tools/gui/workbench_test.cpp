@@ -169,15 +169,20 @@ protected:
         };
     }
 
+    /// Paints a dab on the object of 2000 points, once it is there.
+    void paint()
+    {
+        wait("the object", [this] { return screen_.points == 2000; });
+        press('B');
+        step("a dab", [](WindowInput& input) { input.left = true; });
+    }
     /// Opens a file of 2000 points, paints on it and saves that.
     void savePainted(const std::string& file)
     {
         settings_.what = file;
         settings_.values.erase("points");
         settings_.values.emplace("stiffness", kRamp);
-        wait("the object", [this] { return screen_.points == 2000; });
-        press('B');
-        step("a dab", [](WindowInput& input) { input.left = true; });
+        paint();
         press('B');
         press('S', true);
         wait("the paint as a file", [] { return std::filesystem::exists("part-painted-0001.ply"); });
@@ -387,9 +392,7 @@ TEST_F(WorkbenchTest, ARecordingThatStopsIsComplainedOfAtOnce)
 TEST_F(WorkbenchTest, PaintStaysFromSessionToSessionAndIsAskedForBeforeItIsLost)
 {
     settings_.values["stiffness"] = kRamp;
-    wait("the object", [this] { return screen_.points == 2000; });
-    press('B');
-    step("a dab", [](WindowInput& input) { input.left = true; });
+    paint();
     press('B');
     drop("sample:palm");
     wait("a question", [this] { return complainedOf("what is painted is not saved"); });
@@ -409,9 +412,7 @@ TEST_F(WorkbenchTest, PaintStaysFromSessionToSessionAndIsAskedForBeforeItIsLost)
 TEST_F(WorkbenchTest, PaintThatNobodySavedIsSavedWhenTheWindowCloses)
 {
     settings_.values["stiffness"] = kRamp;
-    wait("the object", [this] { return screen_.points == 2000; });
-    press('B');
-    step("a dab", [](WindowInput& input) { input.left = true; });
+    paint();
     rest(0.1);
     const WorkbenchReport report = run();
 
@@ -444,9 +445,7 @@ TEST_F(WorkbenchTest, PaintIsSavedElsewhereWhereThisFolderIsGone)
     std::filesystem::current_path(here);
     const Variable atHome("HOME", home);
     settings_.values["stiffness"] = kRamp;
-    wait("the object", [this] { return screen_.points == 2000; });
-    press('B');
-    step("a dab", [](WindowInput& input) { input.left = true; });
+    paint();
     step("its folder goes", [&](WindowInput&) { std::filesystem::remove(here); });
     const WorkbenchReport report = run();
 
@@ -463,9 +462,7 @@ TEST_F(WorkbenchTest, PaintThatCannotBeSavedAnywhereIsReportedAsLost)
     std::filesystem::current_path(here);
     const Variable home("HOME", here), temporary("TMPDIR", here);
     settings_.values["stiffness"] = kRamp;
-    wait("the object", [this] { return screen_.points == 2000; });
-    press('B');
-    step("a dab", [](WindowInput& input) { input.left = true; });
+    paint();
     step("its folder goes", [&](WindowInput&) { std::filesystem::remove(here); });
     const WorkbenchReport report = run();
 
@@ -477,9 +474,7 @@ TEST_F(WorkbenchTest, PaintThatCannotBeSavedAnywhereIsReportedAsLost)
 TEST_F(WorkbenchTest, PaintIsSavedWhenTheScreenIsLost)
 {
     settings_.values["stiffness"] = kRamp;
-    wait("the object", [this] { return screen_.points == 2000; });
-    press('B');
-    step("a dab", [](WindowInput& input) { input.left = true; });
+    paint();
     rest(0.1);
     step("the screen goes", [this](WindowInput& input) {
         screen_.isLost = true;
@@ -497,9 +492,7 @@ TEST_F(WorkbenchTest, PaintOfAFileThatIsGoneIsSavedWithItsPoints)
     settings_.values = {{"cells", "32"}};
     settings_.what   = "scan.ply";
     writeCloud("scan.ply", loadCloud(sceneOf("sample:sheet", {{"points", "2000"}, {"stiffness", kRamp}})).cloud);
-    wait("the object", [this] { return screen_.points == 2000; });
-    press('B');
-    step("a dab", [](WindowInput& input) { input.left = true; });
+    paint();
     step("its disk is pulled out", [](WindowInput&) { std::filesystem::remove("scan.ply"); });
     rest(0.1);
     const WorkbenchReport report = run();
