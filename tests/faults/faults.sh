@@ -52,6 +52,7 @@ fit_page g.html fit probes.csv --page WHERE/g.html
 perceive h.svg perceive $sheet --reach 10mm --places 3 --out WHERE/h.svg
 hunt i.svg hunt $hunt --hand press --clock virtual --seconds 0.3 --solver host --cells 32 --out WHERE/i.svg
 study study study plan.json --participant P1 --clock virtual --out WHERE/study
+paper report paper --quick --only f,g --solver host --out WHERE/report
 bench bench bench --quick --solver host --cases dispatches --out WHERE/bench
 calibrate palpate calibrate --emulator
 LIST
@@ -68,8 +69,8 @@ is_whole() {
         ;;
     run_real) "$palpate" export "$2" --csv is.csv >/dev/null 2>&1 && [ "$(wc -l <is.csv)" -gt 50 ] ;; # a busy machine leaves out ticks
     study) [ "$(wc -l <"$2/P1/trials.csv")" -eq "$(wc -l <"whole/$1/P1/trials.csv")" ] && cmp -s "$2/P1/study.json" "whole/$1/P1/study.json" ;;
-    touch) for file in "whole/$1"/*; do # one has times
-        case $file in */touch.json) [ -s "$2/touch.json" ] ;; *) cmp -s "$file" "$2/$(basename "$file")" ;; esac || return 1
+    touch | paper) for file in "whole/$1"/*; do # one has times
+        case $file in */touch.json | */timings.json) [ -s "$2/$(basename "$file")" ] ;; *) cmp -s "$file" "$2/$(basename "$file")" ;; esac || return 1
     done ;;
     *) cmp -s "$2" "whole/$1" ;;
     esac
