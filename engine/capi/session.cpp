@@ -7,6 +7,7 @@
 
 #include "device/haptic_device.h"
 #include "engine/capi/detail/border.h"
+#include "engine/session/drawn_load.h"
 #include "engine/session/force_state.h"
 #include "engine/session/hand_path.h"
 #include "engine/session/scripted_hand.h"
@@ -19,6 +20,7 @@ struct palpate_session {
     palp::SteppedSession session;
     palp::TickRecord     last{};         ///< of step()'s thread
     std::atomic<double>  force{};        ///< [N] its magnitude, for the renderer's thread
+    std::atomic<double>  deflection{};   ///< [m] the plate's largest, likewise
     std::atomic_flag     isStepping{};   ///< by one thread; a second one gets no force
     double               shownForce = 0; ///< [N] of the renderer's thread
     std::uint64_t        shown      = 0; ///< counts what the renderer's thread was given
@@ -94,6 +96,7 @@ palpate_answer answerOf(palpate_session& session, double time, const palpate_han
     own.depth     = glm::dot(r.proxy - r.hip, r.normal);
     own.stiffness = r.stiffness;
     session.force.store(glm::length(r.force), std::memory_order_relaxed);
+    session.deflection.store(r.maxDeflection, std::memory_order_relaxed);
     session.last = r;
     session.isStepping.clear(std::memory_order_release);
     return own;
@@ -157,9 +160,11 @@ int palpate_session_deformed(palpate_session* session, double* xyz, size_t count
         demand(xyz, "xyz"), demand(sequence, "sequence");
         const double force = of.force.load(std::memory_order_relaxed);
         if (!takeDent(of, force) || *sequence == of.shown) return;
-        *sequence        = of.shown;
-        of.shownForce    = force;
-        const auto moved = displaced(of.session.object().cloud(), *of.session.patch(), force);
+        *sequence          = of.shown;
+        of.shownForce      = force;
+        const double load  = drawnLoad(force, of.deflection.load(std::memory_order_relaxed), of.session.patch(),
+                                       of.session.object().material());
+        const auto   moved = displaced(of.session.object().cloud(), *of.session.patch(), load);
         for (std::size_t n = 0; n < moved.size(); ++n) put(moved[n], xyz + 3 * n);
     });
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include "engine/perception/felt_map.h"
 #include "engine/perception/scene_perception.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/press.h"
 
 // Touches without a device: one, many, and what a person would notice.
 
@@ -110,7 +112,7 @@ int palpate_touch(const palpate_object* object, const double place[3], const dou
         static_cast<void>(taken(result, "palpate_touch_result"));
         const palpate_object& of = demand(object, "object");
         PlateSolver           solver(of.scene.solver);
-        const Patch           patch  = patchAt(of, place, from, solver);
+        const Patch           patch = patchAt(of, place, from, solver);
         palpate_touch_result  own{};
         own.felt_stiffness       = patch.feltStiffness;
         own.compliance           = patch.compliance;
@@ -133,8 +135,10 @@ int palpate_touch_displaced(const palpate_object* object, const double place[3],
         demandRoom(count, of.object.size());
         demand(xyz, "xyz");
         if (!std::isfinite(force)) throw Error("force: expected a finite number [N], found " + std::to_string(force));
-        PlateSolver solver(of.scene.solver);
-        const auto  moved = displaced(of.object.cloud(), patchAt(of, place, from, solver), force);
+        PlateSolver  solver(of.scene.solver);
+        const Patch  patch = patchAt(of, place, from, solver);
+        const double load  = pressOf(patch, of.object.material(), std::abs(force)).load;
+        const auto   moved = displaced(of.object.cloud(), patch, std::copysign(load, force));
         for (std::size_t n = 0; n < moved.size(); ++n) put(moved[n], xyz + 3 * n);
     });
 }

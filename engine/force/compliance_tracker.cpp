@@ -17,12 +17,11 @@ ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) con
 {
     if (guessing_)
         if (const auto guess = first_->at(contact)) return *guess;
-    if (!table_) return {};
-    if (law_ != ComplianceLaw::table) return table_->middle();
-    if (const auto place = table_->chart.project(contact)) return table_->at(*place);
-    // The contact is behind the sphere, or not finite: the last felt value stays.
+    if (table_ && law_ != ComplianceLaw::table) return table_->middle();
+    if (const auto place = table_ ? table_->chart.project(contact) : std::nullopt) return table_->at(*place);
+    // The contact is behind the sphere, not finite, or where a law without a table has no site: the last felt value stays.
     return {compliance_.handed - compliance_.offset, contact_.handed - contact_.offset, true,
-            table_->stiffens ? std::optional(stiffening_.handed - stiffening_.offset) : std::nullopt};
+            table_ && table_->stiffens ? std::optional(stiffening_.handed - stiffening_.offset) : std::nullopt};
 }
 
 /// Updates the offset of what is carried when the table changes its value at the contact.

@@ -65,6 +65,7 @@ double feltOf(const SoftObject& object, const Contact& contact, const PatchSetti
 {
     const Patch patch = deform(object, contact, settings, solver);
     demandDeformed(patch);
+    demandConverged(patch);
     return patch.feltStiffness;
 }
 

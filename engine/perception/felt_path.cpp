@@ -4,7 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -114,6 +117,7 @@ std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSetting
         const Contact contact{.point = path[n], .outward = outward[n], .felt = true};
         const Patch   patch = deform(object, contact, settings, solver, carried);
         demandDeformed(patch, "try a smaller reach");
+        demandConverged(patch);
         carried = patch.chart.frame;
         result.push_back({alongOf(line, path[n]), path[n], patch.contactStiffness, patch.compliance});
     }
@@ -160,8 +164,12 @@ double heldShare(const std::vector<FeltTick>& ticks)
 
 SoftObject homogeneous(const SoftObject& object)
 {
+    const auto          b = object.stiffening();
+    std::vector<double> even(b.size());
+    if (!b.empty()) std::ranges::fill(even, std::accumulate(b.begin(), b.end(), 0.0) / double(b.size()));
     return object.repainted(std::vector<double>(object.size(), geometricMean(object.cloud().stiffness())))
-        .withFoundation({});
+        .withFoundation({})
+        .withStiffening(std::move(even));
 }
 
 FeltRange rangeOf(const std::vector<FeltPlace>& places, ForceLaw law)

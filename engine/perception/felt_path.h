@@ -56,7 +56,7 @@ struct FeltTick {
 /// \throws as runVirtual(), and Error if the hand met nothing
 [[nodiscard]] std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line);
 
-/// Returns the same points with one stiffness for all, the geometric mean, on an even foundation. A change felt on it is an artefact.
+/// Returns the same points with one stiffness for all, the geometric mean, and one b, on an even foundation. A change felt on it is an artefact.
 [[nodiscard]] SoftObject homogeneous(const SoftObject& object);
 
 /// The logarithm of the ratio of the stiffest to the softest place [1].

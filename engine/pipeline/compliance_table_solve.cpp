@@ -9,6 +9,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/shell_windows.h"
 #include "engine/plate/load.h"
 
@@ -94,11 +95,11 @@ MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& latti
 }
 
 /// Returns ln c(e)/c(0) with its slopes in the window of a homogeneous shell of the mean rigidity and curvature.
-ComplianceTable::Entries windowOf(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
-                                  double tolerance)
+ComplianceTable::Entries windowOf(const Shell& shell, double below, const FootprintLattice& lattice,
+                                  PlateSolver& solver, double tolerance)
 {
     ShellWindows&     kept   = *lattice.shells;
-    const ShellShape  shape  = meanShape(shell);
+    const ShellShape  shape  = meanShape(shell, below);
     const std::size_t middle = lattice.loads.size() / 2;
     {
         const std::lock_guard lock(kept.mutex);
@@ -118,6 +119,15 @@ ComplianceTable::Entries windowOf(const Shell& shell, const FootprintLattice& la
     return own;
 }
 
+/// Returns l^-4 of a shell as curved as the object is at a typical place, without the foundation [1/m^4]; 0 if its
+/// curvature ends no dents there.
+double curvedAs(const SoftObject& object, const PatchSettings& settings, double rigidity)
+{
+    if (settings.theory != Theory::shell) return 0;
+    const auto dents = dentLengths(object, settings);
+    return dents ? std::max(0.0, std::pow(dents->typical, -4) - settings.foundation / rigidity) : 0;
+}
+
 } // namespace
 
 FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& given, int side, PlateSolver& solver)
@@ -132,14 +142,15 @@ FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings&
     const double    perRigidity =
         contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);
     FootprintLattice lattice =
-        solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance, whole);
+        solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance, whole,
+                     whole ? 0 : curvedAs(object, settings, homogeneous.rigidity(0, 0)));
     // The window is twice as wide as the object, and what a clamped plate gives way by grows with its area.
     if (whole && settings.foundation == 0) lattice.middles.front() -= std::log(4.0);
     return lattice;
 }
 
 FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
-                              double tolerance, bool wholeObject)
+                              double tolerance, bool wholeObject, double curved)
 {
     PALP_EXPECT(shape.side >= 1 && shape.side <= ComplianceTable::kMostSide && shape.side % 2 == 1,
                 "a table of " + std::to_string(shape.side) + " entries a side");
@@ -166,8 +177,9 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
                                        slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
         }
     // The middle rung comes first: a solver counts rigidities in units of the first, and it must be exactly one.
-    const int reach  = homogeneous.foundation > 0 && !wholeObject ? kRungs : 0;
-    lattice.rigidity = homogeneous.rigidity(0, 0);
+    const int reach    = homogeneous.foundation > 0 && !wholeObject ? kRungs : 0;
+    lattice.rigidity   = homogeneous.rigidity(0, 0);
+    lattice.foundation = homogeneous.foundation;
     std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
     std::vector<double>                   middles(rungs.size());
     for (int n = 0; n <= 2 * reach; ++n) {
@@ -181,6 +193,13 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
             entry = wholeObject ? ComplianceTable::Entry{}
                                 : ComplianceTable::Entry{entry.value - middle, entry.slopeX, entry.slopeZ};
         middles[std::size_t(rung + reach)] = middle;
+        if (curved > 0) {
+            Plate dome = plate;
+            dome.foundation += curved * plate.rigidity(0, 0);
+            const Footprint& finger = lattice.loads[lattice.loads.size() / 2];
+            middles[std::size_t(rung + reach)] =
+                std::log(solver.solveFootprints(dome, {&finger, 1}, 0, tolerance, tolerance).responses.front().work);
+        }
         if (rung == 0) lattice.feltRadius = bendingRadius(plate, own.middle.deflection);
     }
     lattice.rungs   = std::move(rungs);
@@ -217,34 +236,50 @@ double FootprintLattice::lnCompliance(double ofRigidity) const
 TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance)
 {
     TableSolution  result;
-    MiddleSolution middle = solveTable(plate, lattice, solver, tolerance, result.table);
+    MiddleSolution middle = solveTable(plate, meanFoundation(plate), lattice, solver, tolerance, result.table);
     result.middle         = std::move(middle.solution);
     result.compliance     = middle.compliance;
     return result;
 }
 
-MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
-                          ComplianceTable& table)
+MiddleSolution solveTable(const Plate& plate, double below, const FootprintLattice& lattice, PlateSolver& solver,
+                          double tolerance, ComplianceTable& table)
 {
     FootprintSolution solved =
         solver.solveFootprints(plate, lattice.loads, lattice.loads.size() / 2, tolerance, PlateSolver::kAsWorks);
     const OverNode over(plate.rigidity);
     // The window's correction depends on how far a dent spreads, (D/k)^(1/4): a foundation that is firmer throughout is
     // as good as a softer sheet.
-    const double firmer = plate.foundationShape.values().empty() || lattice.wholeObject
-                              ? 1
-                              : geometricMean(plate.foundationShape.values());
+    const double firmer = lattice.foundation > 0 && below > 0 ? below / lattice.foundation : 1;
     return fillTable(std::move(solved), lattice, over, lattice.homogeneous(over.mean / firmer), table);
 }
 
-MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver, double tolerance,
-                          ComplianceTable& table)
+MiddleSolution solveTable(const Shell& shell, double below, const FootprintLattice& lattice, PlateSolver& solver,
+                          double tolerance, ComplianceTable& table)
 {
     FootprintSolution solved =
         solver.solveFootprints(shell, lattice.loads, lattice.loads.size() / 2, tolerance, PlateSolver::kAsWorks);
-    const auto own = lattice.loads.size() > 1 && !lattice.wholeObject ? windowOf(shell, lattice, solver, tolerance)
-                                                                      : ComplianceTable::Entries{};
+    const auto own = lattice.loads.size() > 1 && !lattice.wholeObject
+                         ? windowOf(shell, below, lattice, solver, tolerance)
+                         : ComplianceTable::Entries{};
     return fillTable(std::move(solved), lattice, OverNode(shell.bending.rigidity), own, table);
+}
+
+double meanFoundation(const Plate& plate)
+{
+    const auto& shape = plate.foundationShape.values();
+    return plate.foundation * (shape.empty() ? 1 : geometricMean(shape));
+}
+
+double rigidityUnder(const Footprint& footprint, const NodeField& rigidity)
+{
+    const double node  = rigidity.values()[footprint.parts.front().node];
+    double       force = 0, sum = 0;
+    for (const Footprint::Part& part : footprint.parts) {
+        force += part.force;
+        sum += part.force * std::log(rigidity.values()[part.node] / node);
+    }
+    return node * std::exp(sum / force);
 }
 
 void fillContact(const NodeField& rigidity, const FootprintLattice& lattice, ComplianceTable& table)

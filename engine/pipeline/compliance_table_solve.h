@@ -27,11 +27,12 @@ struct FootprintTable {
 /// is kept for a ladder of rigidities, and a plate takes that of its geometric mean.
 struct FootprintLattice {
     FootprintTable         shape{};
-    std::vector<Footprint> loads{};      ///< 1 N each, in the order of ComplianceTable's entries
-    double                 rigidity = 1; ///< D of the middle rung [N m]
+    std::vector<Footprint> loads{};        ///< 1 N each, in the order of ComplianceTable's entries
+    double                 rigidity   = 1; ///< D of the middle rung [N m]
+    double                 foundation = 0; ///< k of the homogeneous windows [Pa/m]
     /// ln c(e)/c(0) of homogeneous windows, with its slopes, by rigidity; one rung without a foundation.
     std::vector<ComplianceTable::Entries> rungs{};
-    std::vector<double>                   middles{}; ///< ln c in the middle of those windows
+    std::vector<double>                   middles{}; ///< ln c in their middle, of a shell about as curved as the object
     bool   wholeObject = false; ///< the window spans the object: what its borders do to a footprint stays in
     double feltRadius  = 0;     ///< root mean square radius of the bending energy, in the middle rung [m]
     std::shared_ptr<ShellWindows> shells{}; ///< of homogeneous ones in this window, as they are met
@@ -57,9 +58,14 @@ struct FootprintLattice {
 ///                     come
 /// \param tolerance    as for the tables themselves: the error that iteration leaves is then taken out too
 /// \param wholeObject  the window spans the object: nothing of a homogeneous window is to be taken out of its tables
+/// \param curved       l^-4 of a shell [1/m^4]: under the ladder's middles it stands for the membrane, because a dome gives
+///                     way as a plate on a foundation of D/l^4 does (Reissner 1946)
 /// \throws Error if a footprint does not lie wholly on the plate
 [[nodiscard]] FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
-                                            double tolerance, bool wholeObject = false);
+                                            double tolerance, bool wholeObject = false, double curved = 0);
+
+/// Returns k of a plate's foundation, its geometric mean over the nodes [Pa/m].
+[[nodiscard]] double meanFoundation(const Plate& plate);
 
 struct TableSolution {
     ComplianceTable table;      ///< without sequence number, time and chart
@@ -71,8 +77,8 @@ struct TableSolution {
 /// their c is right to it, see PlateSolver::solveFootprints().
 ///
 /// c(q) = p_q . w_q with A w_q = p_q. A is symmetric, so that dc/dq = 2 (dp_q/dq) . w_q: slopes need no further solve.
-/// k_c(q) is that of the rigidity's geometric mean over the footprint, weighted as the load is: at a step of the
-/// object it then changes over the width of a footprint, as c does.
+/// k_c(q) is that of the rigidity's geometric mean over the footprint, see rigidityUnder(): at a step of the object it then
+/// changes over the width of a footprint, as c does.
 /// \throws Error as PlateSolver::solveFootprints()
 [[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
                                        double tolerance);
@@ -85,13 +91,19 @@ struct MiddleSolution {
 
 /// Does the same into a table that is there, so that who reads it needs no copy. Its sequence number, time and chart
 /// stay as they are.
-[[nodiscard]] MiddleSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
-                                        double tolerance, ComplianceTable& table);
+/// \param below  k of what lies below, its mean over the window without what is held [Pa/m], as meanFoundation() has it
+[[nodiscard]] MiddleSolution solveTable(const Plate& plate, double below, const FootprintLattice& lattice,
+                                        PlateSolver& solver, double tolerance, ComplianceTable& table);
 
 /// Does the same on a shell. What the window does to footprints off its middle, and the phase of the grid, are those of
 /// a shell of the mean rigidity and curvature, to a step of 2 %, which is solved as well and kept with the lattice.
-[[nodiscard]] MiddleSolution solveTable(const Shell& shell, const FootprintLattice& lattice, PlateSolver& solver,
-                                        double tolerance, ComplianceTable& table);
+[[nodiscard]] MiddleSolution solveTable(const Shell& shell, double below, const FootprintLattice& lattice,
+                                        PlateSolver& solver, double tolerance, ComplianceTable& table);
+
+/// Returns the geometric mean of a rigidity under a footprint, weighted as the load is [N m]: that from which the stiffness
+/// of the contact follows, and exactly the rigidity where all nodes are alike.
+/// \pre the footprint presses somewhere
+[[nodiscard]] double rigidityUnder(const Footprint& footprint, const NodeField& rigidity);
 
 /// Fills in the stiffness of the contact under each footprint: of the geometric mean of the rigidity, weighted as the
 /// load is.

@@ -391,7 +391,7 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
 /// Refuses an object that nothing holds: it would move off as a whole.
 void refuseIfLoose(const Patch& patch, const PatchSettings& settings)
 {
-    constexpr std::size_t kFewest = 3; // nodes, not on one line, hold a sheet in space
+    constexpr std::size_t kFewest = 3; // nodes hold a sheet in space
     if (settings.windowOf == WindowOf::contact || settings.foundation > 0 || patch.heldNodes >= kFewest) return;
     throw Error(placeText(patch.contact) + ": the piece of surface that is touched reaches " +
                 std::to_string(patch.heldNodes) + " nodes that are held, expected at least " + std::to_string(kFewest) +
@@ -463,6 +463,21 @@ void rigiditiesOf(const SoftObject& object, std::span<const std::uint32_t> point
     for (std::size_t k = 0; k < points.size(); ++k) rigidities[k] = stiffness[points[k]] * perUnit;
 }
 
+/// Returns the load of 1 N on the footprint about the middle node, where there is a sheet.
+/// \param covered  share of the sheet at the nodes [1]; empty: all
+NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings, const NodeField& covered)
+{
+    NodeField load = footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
+    if (covered.values().empty()) return load;
+    const Footprint whole(load);
+    return onSheet(whole, covered, whole).load(grid);
+}
+
+NodeField unitLoad(const Patch& patch, const PatchSettings& settings)
+{
+    return unitLoad(patch.plate.grid, settings, patch.covered);
+}
+
 /// \param ranks  of the points of the touched surface
 void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::uint32_t> ranks,
                   const PatchSettings& settings)
@@ -496,12 +511,13 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     refuseIfEmpty(patch, settings);
     auto next = resampled.begin() + 1;
     if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
+    patch.below = meanFoundation(patch.plate);
     if (settings.windowOf == WindowOf::object) cutOut(patch, sparsest, settings.theory);
     NodeField held{};
     if (!object.held().empty()) {
         held = std::move((next++)->rigidity);
         for (double& share : held.values()) share = std::log(share);
-        holdNodes(patch, held, settings.foundation);
+        holdNodes(patch, held, settings.foundation, unitLoad(patch, settings));
     }
     if (settings.windowOf == WindowOf::object && settings.theory == Theory::shell) findSheared(patch, held);
     refuseIfLoose(patch, settings);
@@ -511,21 +527,6 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
 }
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
-
-/// Returns the load of 1 N on the footprint about the middle node, where there is a sheet.
-/// \param covered  share of the sheet at the nodes [1]; empty: all
-NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings, const NodeField& covered)
-{
-    NodeField load = footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
-    if (covered.values().empty()) return load;
-    const Footprint whole(load);
-    return onSheet(whole, covered, whole).load(grid);
-}
-
-NodeField unitLoad(const Patch& patch, const PatchSettings& settings)
-{
-    return unitLoad(patch.plate.grid, settings, patch.covered);
-}
 
 void keep(Patch& patch, PlateSolution solution, double compliance)
 {
@@ -553,8 +554,8 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
 {
     const StageClock clock(patch.times.solve);
     const auto       solved = [&](const FootprintLattice& loads) {
-        return patch.curvature ? solveTable(shellOf(patch), loads, solver, settings.tolerance, table)
-                                     : solveTable(patch.plate, loads, solver, settings.tolerance, table);
+        return patch.curvature ? solveTable(shellOf(patch), patch.below, loads, solver, settings.tolerance, table)
+                                     : solveTable(patch.plate, patch.below, loads, solver, settings.tolerance, table);
     };
     const bool     whole  = !patch.covered.values().empty();
     MiddleSolution middle = solved(whole ? onSheet(lattice, patch) : lattice);
@@ -574,9 +575,12 @@ void movePoints(Patch& patch)
     patch.pointResponse = responsesAt(patch, patch.followed);
 }
 
-void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings)
+/// \param finger  its footprint in the middle, as if the sheet had no border: also beyond it tables have a contact
+void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings, const Footprint& finger)
 {
-    const double modulus   = object.material().modulus(rigidityAtContact(patch));
+    const bool   whole     = !patch.covered.values().empty();
+    const double rigidity  = rigidityUnder(finger, whole ? sheetRigidity(patch) : patch.plate.rigidity);
+    const double modulus   = object.material().modulus(rigidity);
     patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
     patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
     patch.stiffening       = object.material().stiffening;
@@ -631,7 +635,8 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
                                std::max(settings.tolerance, kShapesTolerance));
 }
 
-constexpr double kDense = 0.3; ///< spacing over the side of the cubes below which one point per cube will do [1]
+constexpr double kCubes[] = {1, 4}; ///< along a cell, of which one point each is taken, the first that will do [1]
+constexpr double kDense   = 0.3;    ///< spacing over the side of the cubes below which one point per cube will do [1]
 
 /// Returns whether the surface hardly turns within a few cubes of a place, so that their mean points show what it is.
 bool isSmoothAbout(const SoftObject& object, std::uint32_t nearest, const glm::dvec3& place, double side)
@@ -656,7 +661,7 @@ std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Co
     constexpr double kQuiet = 0.1; // noise over the side of the cubes [1]
     if (settings.neighbourhood == Neighbourhood::ball || object.survey().spacings().empty()) return {};
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
-    for (const double cubes : {1.0, 4.0}) { // along a cell
+    for (const double cubes : kCubes) {
         const double side  = cellOf(settings) / cubes;
         const bool   dense = object.survey().spacing(nearest) < kDense * side;
         const bool   quiet = object.survey().noise(nearest) < kQuiet * side;
@@ -692,8 +697,10 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
 void prepareTouch(const SoftObject& object, const PatchSettings& given)
 {
     const PatchSettings settings = settledFor(object, given);
-    if (settings.neighbourhood != Neighbourhood::ball && object.spacing() < kDense * cellOf(settings))
-        static_cast<void>(object.coarse(cellOf(settings)));
+    if (settings.neighbourhood == Neighbourhood::ball) return;
+    for (const double cubes : kCubes)
+        if (const double side = cellOf(settings) / cubes; object.spacing() < kDense * side)
+            static_cast<void>(object.coarse(side));
 }
 
 Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& given, PlateSolver& solver,
@@ -704,9 +711,10 @@ Patch deform(const SoftObject& object, const Contact& contact, const PatchSettin
     patch.coarse           = coarseFor(object, contact, settings);
     const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
     if (!makePlate(patch, used, contact, settings, carried)) return patch;
-    bendPlate(patch, settings, solver);          // 2.5: and bends as a plate under a unit force;
-    movePoints(patch);                           // 2.6: the plate moves the points,
-    findStiffness(patch, used, settings);        //      and with the contact it is what the hand feels,
+    bendPlate(patch, settings, solver);  // 2.5: and bends as a plate under a unit force;
+    movePoints(patch);                   // 2.6: the plate moves the points,
+    findStiffness(patch, used, settings, //      and with the contact it is what the hand feels,
+                  Footprint(unitLoad(patch.plate.grid, settings, {})));
     pressDeeper(patch, settings, solver, false); //      also where it is pressed far.
     return patch;
 }
@@ -739,7 +747,7 @@ Patch deformWithTable(const SoftObject& object, const Contact& contact, const Pa
     if (!makePlate(patch, used, contact, settings, carried)) return patch;
     bendPlate(patch, settings, lattice, solver, table);
     movePoints(patch);
-    findStiffness(patch, used, settings);
+    findStiffness(patch, used, settings, lattice.loads[lattice.loads.size() / 2]);
     pressDeeper(patch, settings, solver, true);
     return patch;
 }

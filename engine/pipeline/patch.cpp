@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/quantity.h"
 #include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/whole_object.h"
 #include "engine/plate/load.h"
@@ -65,7 +67,26 @@ double mostResponse(const Patch& patch)
 double rigidityAtContact(const Patch& patch)
 {
     const PlateGrid& grid = patch.plate.grid;
-    return sheetRigidity(patch)(grid.cellsX / 2, grid.cellsZ / 2);
+    return sheetRigidity(patch, std::size_t(grid.cellsX / 2 * grid.nodesZ() + grid.cellsZ / 2));
+}
+
+std::pair<double, double> rigiditiesOfSheet(const Patch& patch)
+{
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t n = 0; n < patch.plate.grid.nodes(); ++n) {
+        if (!isOnSheet(patch, n)) continue;
+        const double own = sheetRigidity(patch, n);
+        least            = std::min(least, own);
+        most             = std::max(most, own);
+    }
+    return {least, most};
+}
+
+std::size_t nodesOfSheet(const Patch& patch)
+{
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < patch.plate.grid.nodes(); ++n) count += isOnSheet(patch, n);
+    return count;
 }
 
 std::string placeText(const Contact& contact)
@@ -80,6 +101,14 @@ void demandDeformed(const Patch& patch, const char* hint)
     if (patch.deformed()) return;
     throw Error(placeText(patch.contact) + ": the " + std::to_string(patch.gathered.size()) +
                 " points nearby do not determine a surface (" + name(patch.sphere.outcome) + "); " + hint);
+}
+
+void demandConverged(const Patch& patch)
+{
+    if (patch.report.converged) return;
+    throw Error(placeText(patch.contact) + ": the plate's solution is not as good as asked for: its error is about " +
+                formatNumber(patch.report.errorEstimate.value_or(1)) +
+                " or more, relative; try fewer cells or less contrast");
 }
 
 std::string directionText(const glm::dvec3& direction)

@@ -124,6 +124,7 @@ struct Patch {
     std::pair<double, double> principal{}; ///< curvatures at the contact, the larger by size first; 0 without a shell
                                            ///< [1/m] > 0: bulges to the finger
     double      shellLength = 0; ///< l over which a dent dies away, a foundation included [m]; 0 without a shell
+    double      below       = 0; ///< k of what lies below, its mean over the window without what is held [Pa/m]
     double      sag         = 0; ///< of the touched surface across the patch window, over its width [1]; of a shell
     double      spacing     = 0; ///< typical distance of neighbouring points at the contact [m]
     double      noise       = 0; ///< standard deviation of the points there about the surface [m]
@@ -133,7 +134,7 @@ struct Patch {
     double      beyond = 1; ///< rigidity beyond the sheet's border over the sheet's [1]; 1: there is no border
     NodeField
         held{}; ///< share of each node that the scene holds, by a foundation and in the sheet's plane [1]; empty: none
-    std::size_t heldNodes = 0; ///< nodes that the scene holds
+    std::size_t heldNodes = 0; ///< nodes that the scene holds, of the piece that is touched
     NodeField   sheared{};     ///< see Shell, where the window spans the object
     /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.
     std::optional<LargeLaw> large;
@@ -171,6 +172,10 @@ struct Patch {
 /// Returns the sheet's flexural rigidity at the contact [N m].
 [[nodiscard]] double rigidityAtContact(const Patch& patch);
 
+/// Returns the least and the largest rigidity of the sheet at the nodes that the object covers [N m], and how many they are.
+[[nodiscard]] std::pair<double, double> rigiditiesOfSheet(const Patch& patch);
+[[nodiscard]] std::size_t               nodesOfSheet(const Patch& patch);
+
 /// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where an edge is held
 /// or free.
 [[nodiscard]] double bodyFelt(const Patch& patch) noexcept;
@@ -187,6 +192,10 @@ struct Patch {
 /// Refuses a patch whose points determine no surface.
 /// \throws Error naming the place, unless patch.deformed()
 void demandDeformed(const Patch& patch, const char* hint = "try a larger --window, or check --length-unit");
+
+/// Refuses an answer that is not as good as asked for.
+/// \throws Error naming the place, unless patch.report.converged
+void demandConverged(const Patch& patch);
 
 /// Returns a unit vector as complaints and warnings show it: "0.00,0.60,0.80".
 [[nodiscard]] std::string directionText(const glm::dvec3& direction);

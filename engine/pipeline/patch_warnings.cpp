@@ -17,12 +17,13 @@ namespace {
 
 /// Returns the width beyond which the edges of a patch window on a foundation are not felt [m]; empty without one. D is the
 /// geometric mean over the window.
-std::optional<double> windowWanted(const Plate& plate)
+/// \param foundation  of the scene: that of the plate also holds what is held [Pa/m]
+std::optional<double> windowWanted(const Plate& plate, double foundation)
 {
-    if (plate.foundation <= 0) return {};
+    if (foundation <= 0) return {};
     const Extremes found = extremesOf(plate.rigidity.values());
     return foundationWindow(found.least, found.most) *
-           std::pow(geometricMean(plate.rigidity.values()) / plate.foundation, 0.25);
+           std::pow(geometricMean(plate.rigidity.values()) / foundation, 0.25);
 }
 
 double largest(const NodeField& field)
@@ -223,7 +224,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
             "there is no foundation, so the size of the patch window decides: compliance grows with its area" +
             std::string(settings.theory == Theory::shell ? ", and with how its edges are held, see the support range"
                                                          : ""));
-    if (const auto width = windowWanted(patch.plate); !whole && !patch.curvature && width && window < *width)
+    if (const auto width = windowWanted(patch.plate, settings.foundation);
+        !whole && !patch.curvature && width && window < *width)
         result.push_back("the patch window of " + formatQuantity(window, "m") + " is narrower than the " +
                          formatQuantity(*width, "m") +
                          " that this rigidity and foundation ask for: its edges are felt");

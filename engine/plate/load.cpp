@@ -129,7 +129,7 @@ NodeField footprintLoad(const PlateGrid& grid, double force, double x, double z,
     if (!(radius >= spacing * (1 - kRounding)))
         throw Error("the footprint of radius " + std::to_string(radius) + " m is smaller than one spacing of " +
                     std::to_string(spacing) +
-                    " m; take more --cells, a larger --footprint-radius or a smaller --window");
+                    " m; take more --cells, a --footprint-radius of that or more, or a smaller --window");
 
     // Sub-cells are laid out from the contact, not from the grid: their pattern then moves with the contact, so that
     // the load changes smoothly and a contact on a node gets a symmetric load.

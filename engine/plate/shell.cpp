@@ -165,8 +165,8 @@ std::optional<std::string> whyUnsolvable(const Shell& shell)
     }
     if (shell.bending.poissonRatio < 0) return "a shell's Poisson's ratio has to be at least 0";
     if (isStressFree(shell)) return std::nullopt;
-    if (const auto why = whyUnsolvable(membraneOf(shell)))
-        return "the edges of the membrane: " + *why + " (let all four be free or hold two neighbouring sides)";
+    if (whyUnsolvable(membraneOf(shell))) // only its edges are left as a reason
+        return "the edges leave its membrane free to move: let all four be free or hold two neighbouring sides";
     return std::nullopt;
 }
 

@@ -97,8 +97,7 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         frame_                = patch.chart.frame;
         update.table.sequence = touch.sequence;
         update.table.time     = touch.time;
-        const int middle      = settings_.cells / 2;
-        update.rigidity       = patch.plate.rigidity(middle, middle);
+        update.rigidity       = rigidityAtContact(patch);
         update.mostResponse   = mostResponse(patch);
         update.errorEstimate  = patch.report.errorEstimate.value_or(0);
         update.iterations     = patch.report.iterations.value_or(0);

@@ -13,13 +13,14 @@ namespace palp {
 
 /// Shows a session while it runs. It is valid during the call that hands it over.
 struct SessionView {
-    TickRecord       record;          ///< the newest
-    double           loopPeriod = 0;  ///< of the servo, a mean over 0.1 s [s]
-    double           solveTime  = 0;  ///< of the last patch [s]; 0: none yet
-    std::uint32_t    buttons    = 0;  ///< of the device
-    const char*      words      = ""; ///< of the device about its present fault, see HapticDevice::faultWords()
-    const Patch*     patch = nullptr; ///< the last one: displaced(cloud, *patch, |force|) is the surface; may be null
-    std::string_view warning{};       ///< the real-time rights that the system refused; empty if none
+    TickRecord    record;          ///< the newest
+    double        loopPeriod = 0;  ///< of the servo, a mean over 0.1 s [s]
+    double        solveTime  = 0;  ///< of the last patch [s]; 0: none yet
+    std::uint32_t buttons    = 0;  ///< of the device
+    const char*   words      = ""; ///< of the device about its present fault, see HapticDevice::faultWords()
+    const Patch*  patch =
+        nullptr;                ///< the last one: displaced(cloud, *patch, drawnLoad(...)) is the surface; may be null
+    std::string_view warning{}; ///< the real-time rights that the system refused; empty if none
 };
 
 /// The settings of a session in real time, beside its parts.

@@ -243,7 +243,7 @@ void refuseContradictions(const Scene& scene, const std::map<std::string, std::s
     const auto refuse = [](const std::string& what, const std::string& expected, const std::string& found) {
         throw Error(what + ": expected " + expected + ", found " + found);
     };
-    if (scene.patch.windowOf != WindowOf::dent && !(2 * scene.patch.footprintRadius < scene.patch.window))
+    if (scene.patch.windowOf == WindowOf::contact && !(2 * scene.patch.footprintRadius < scene.patch.window))
         refuse(whatSays("footprint_radius"),
                "a fingertip within the patch window of " + plainNumber(scene.patch.window) + " m",
                "a radius of " + plainNumber(scene.patch.footprintRadius) + " m");

@@ -25,7 +25,10 @@ const char* const kSheet = R"({"cloud": "sample:sheet", "points": 6000, "stiffne
 struct Object {
     palpate_object* handle = nullptr;
 
-    Object() { EXPECT_EQ(palpate_object_from_scene(kSheet, nullptr, &handle), PALPATE_OK) << palpate_error_text(); }
+    explicit Object(const std::string& scene = kSheet)
+    {
+        EXPECT_EQ(palpate_object_from_scene(scene.c_str(), nullptr, &handle), PALPATE_OK) << palpate_error_text();
+    }
     Object(const Object&)            = delete;
     Object& operator=(const Object&) = delete;
     ~Object() { palpate_object_destroy(handle); }
@@ -57,6 +60,14 @@ struct Session {
 double heightAt(double time)
 {
     return 3e-3 - 4.5e-3 * std::min(1.0, time);
+}
+
+/// How deep the deepest of points is [m].
+double deepestOf(const std::vector<double>& xyz)
+{
+    double deepest = 0;
+    for (std::size_t n = 2; n < xyz.size(); n += 3) deepest = std::max(deepest, -xyz[n]);
+    return deepest;
 }
 
 TEST(CInterface, AStepAllocatesNothing)
@@ -116,9 +127,41 @@ TEST(CInterface, AHostsLoopFeelsWhatTouchSays)
     EXPECT_NEAR(last.force[2], felt.felt_stiffness * last.depth, 0.03 * last.force[2])
         << "the place of the nearest point against that of the proxy";
     EXPECT_GT(dented, 0u);
-    double deepest = 0;
-    for (std::size_t n = 0; n < count; ++n) deepest = std::min(deepest, xyz[3 * n + 2]);
-    EXPECT_LT(deepest, -0.3 * last.force[2] * felt.compliance);
+    EXPECT_GT(deepestOf(xyz), 0.3 * last.force[2] * felt.compliance);
+}
+
+/// A force that stiffens with depth dents as deep as the hand is, not as deep as a spring would let that force go.
+TEST(CInterface, ADentIsAsDeepAsTheHandWhereTheSheetStiffens)
+{
+    const std::string sheet(kSheet, std::strlen(kSheet) - 1);
+    const double      middle[3] = {0, 0, 0}, side[3] = {0, 0, 1};
+    const Object      object(sheet + R"(, "stiffening": 800})"), large(sheet + R"(, "large": "on"})");
+    const std::size_t count  = palpate_object_size(object.handle);
+    const auto        dentOf = [&](const Object& of, double force) {
+        std::vector<double> xyz(3 * count);
+        EXPECT_EQ(palpate_touch_displaced(of.handle, middle, side, force, xyz.data(), count), PALPATE_OK)
+            << palpate_error_text();
+        return deepestOf(xyz);
+    };
+    auto felt = PALPATE_INIT(palpate_touch_result);
+    ASSERT_EQ(palpate_touch(object.handle, middle, side, &felt), PALPATE_OK) << palpate_error_text();
+    const double unit = dentOf(object, 1e-6) / 1e-6; // [m/N]
+    for (const double force : {0.1, 1.0, 3.0}) {
+        const double depth = std::log1p(800 * force / felt.felt_stiffness) / 800;
+        EXPECT_NEAR(dentOf(object, force) / (felt.felt_stiffness * depth * unit), 1, 1e-4) << force << " N";
+    }
+    EXPECT_LT(dentOf(large, 20), 0.9 * 20 * dentOf(large, 1e-6) / 1e-6);
+
+    const Session session(object);
+    for (int n = 0; n < 3000; ++n) {
+        session.step(1e-3 * n, heightAt(1e-3 * n));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    std::vector<double> xyz(3 * count);
+    std::uint64_t       seen = 0;
+    ASSERT_EQ(palpate_session_deformed(session.handle, xyz.data(), count, &seen), PALPATE_OK);
+    EXPECT_NEAR(deepestOf(xyz) / (felt.felt_stiffness * 1.5e-3 * unit), 1, 0.08)
+        << "the sheet's points are 2 mm apart; with the force in place of the load it is 1.9";
 }
 
 /// Structs of random bytes and sizes give a code and a sentence, and never more.

@@ -235,6 +235,21 @@ TEST(ComplianceTracker, TheHomogeneousLawAnswersBeyondTheReachOfAnOldTableOnly)
     }
 }
 
+TEST(ComplianceTracker, WhereTheHomogeneousLawHasNoSiteTheLastFeltValueStays)
+{
+    const HomogeneousLaw law = lawAtTheOrigin();
+    Servo                servo;
+    servo.handOver = ComplianceTracker(ComplianceLaw::table, &law);
+    const ComplianceTable none;
+    ASSERT_NEAR(servo.tick(none), -5, 1e-12);
+    servo.contact    = {5e-3, 0, 0};
+    const auto there = servo.handOver.tick({servo.contact, servo.time, 0, &none});
+    ASSERT_TRUE(there);
+    EXPECT_NEAR(std::log(there->compliance), -5, 1e-12);
+    EXPECT_NEAR(there->contactStiffness, 500, 1e-9);
+    EXPECT_TRUE(there->clamped);
+}
+
 TEST(ComplianceTracker, NoTableForAQuarterOfASecondIsNoAnswer)
 {
     const HomogeneousLaw  law = lawAtTheOrigin();

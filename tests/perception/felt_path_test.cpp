@@ -140,5 +140,16 @@ TEST(FeltPath, TheHomogeneousTwinHasTheGeometricMeanEverywhere)
     EXPECT_EQ(twin.positions()[1], object.positions()[1]);
 }
 
+TEST(FeltPath, TheHomogeneousTwinStiffensAlikeEverywhere)
+{
+    const SoftObject object =
+        SoftObject(PointCloud({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {1, 1, 1}, StiffnessKind::rigidity))
+            .withStiffening({0, 300, 900});
+    const SoftObject twin = homogeneous(object);
+    ASSERT_EQ(twin.stiffening().size(), 3u);
+    for (const double b : twin.stiffening()) EXPECT_NEAR(b, 400, 1e-10);
+    EXPECT_TRUE(homogeneous(object.withStiffening({})).stiffening().empty()) << "the material says it";
+}
+
 } // namespace
 } // namespace palp

@@ -117,6 +117,77 @@ TEST(TableSolve, SlopesAreThoseOfTheCompliance)
         }
 }
 
+/// One place has one stiffness: a touch that is not a session's has the mean under the fingertip too, not one node's.
+TEST(TableSolve, TheContactIsThatOfATouchAlsoWhereAWartIsAsSmallAsTheFingertip)
+{
+    PlateSolver host("host");
+    for (const double radius : {1.5e-3, 3e-3, 6e-3}) {
+        const SpatialLaw law{
+            .kind = SpatialLaw::Kind::disc, .from = 1e5, .to = 1e6, .centres = {{0, 0, 0}}, .width = radius};
+        const SoftObject object(makeSample(sampleNamed("sheet"), 20'000, 1, law));
+        const Contact    middle{{0, 0, 0}, {0, 0, 1}};
+        const Patch      alone = deform(object, middle, kSkin, host);
+        const auto       made  = deformWithTable(object, middle, kSkin, footprintLattice(object, kSkin, 3, host), host);
+        ASSERT_TRUE(made.table);
+        EXPECT_NEAR(std::exp(made.table->middle().lnContactStiffness) / alone.contactStiffness, 1, 1e-9) << radius;
+        EXPECT_NEAR(made.patch.contactStiffness / alone.contactStiffness, 1, 1e-12) << radius;
+        const double node = contactStiffness(object.material().modulus(rigidityAtContact(alone)), kSkin.footprintRadius,
+                                             object.material().thickness);
+        EXPECT_LT(alone.contactStiffness, node * (radius < 4e-3 ? 0.95 : 1.01)) << "the sheet beside it is softer";
+    }
+}
+
+/// What is held far away is no firmer foundation, and the window's correction has to know.
+TEST(TableSolve, TablesOfHomogeneousSheetsAreFlatBesideWhatIsHeld)
+{
+    PlateSolver         host("host");
+    const SoftObject    sheet = homogeneous("sheet", 1);
+    std::vector<double> held;
+    for (const glm::dvec3& p : sheet.positions()) held.push_back(p.x > 35e-3);
+    PatchSettings settings = kSkin;
+    settings.window        = 46e-3;
+    const Contact middle{{0, 0, 0}, {0, 0, 1}};
+    const auto    flatness = [&](const SoftObject& object) {
+        const auto made = deformWithTable(object, middle, settings, footprintLattice(sheet, settings, 7, host), host);
+        double     most = 0;
+        for (std::size_t n = 0; n < 49; ++n)
+            most = std::max(most, std::abs(made.table->compliance[n].value - made.table->middle().lnCompliance));
+        return most;
+    };
+    EXPECT_LT(flatness(sheet), 1e-6);
+    EXPECT_LT(flatness(sheet.withHeld(held)), 1e-6) << "nothing of the window is held";
+    Patch patch = deform(sheet.withHeld(held), middle, settings, host);
+    EXPECT_NEAR(patch.below, settings.foundation, 1e-6);
+}
+
+/// The law before the first table, on a dome: it was that of a flat plate, six times too soft.
+TEST(TableSolve, TheMiddlesOfALatticeAreThoseOfAShellAsCurvedAsTheObject)
+{
+    PlateSolver             host("host");
+    const double            radius = 50e-3;
+    std::vector<glm::dvec3> points;
+    constexpr int           kCount = 12'000;
+    for (int n = 0; n < kCount; ++n) { // Fibonacci's spiral
+        const double z = 1 - (2 * n + 1.0) / kCount, around = n * 2.399963229728653, flat = std::sqrt(1 - z * z);
+        points.push_back(radius * glm::dvec3(flat * std::cos(around), flat * std::sin(around), z));
+    }
+    std::vector<double> moduli(points.size(), 3e5);
+    const SoftObject    sphere(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
+                               Material{.thickness = 2e-3, .poissonRatio = 0.45});
+    for (const double foundation : {0.0, 3e4}) {
+        const Edge    s = Edge::supported;
+        PatchSettings settings{
+            .foundation = foundation, .window = 60e-3, .cells = 48, .theory = Theory::shell, .edges = {s, s, s, s}};
+        const double felt = deform(sphere, {{0, 0, radius}, {0, 0, 1}}, settings, host).compliance;
+        const auto   at   = footprintLattice(sphere, settings, 1, host);
+        EXPECT_NEAR(std::exp(at.lnCompliance(sphere.rigidity(0))) / felt, 1, 0.15) << foundation;
+        EXPECT_NEAR(at.lnCompliance(2 * sphere.rigidity(0)) - at.lnCompliance(sphere.rigidity(0)), -std::log(2.0),
+                    foundation > 0 ? 0.2 : 1e-12);
+        settings.theory = Theory::plate;
+        EXPECT_GT(std::exp(footprintLattice(sphere, settings, 1, host).lnCompliance(sphere.rigidity(0))) / felt, 2);
+    }
+}
+
 /// The floor of every measurement of perception, J = (largest - smallest stiffness within 5 mm) / 7 %, the plate part.
 TEST(TableSolve, TablesOfHomogeneousPlatesAreFlatWhateverTheWindow)
 {

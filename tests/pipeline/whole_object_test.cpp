@@ -160,6 +160,35 @@ TEST(WholeObject, WhatNothingHoldsIsRefused)
     EXPECT_GT(touched(loose, 45e-3, 0, bedded).compliance, 0) << "a foundation holds it";
 }
 
+/// Two sheets of one plane hang together by nothing: what holds the one does not hold the other.
+TEST(WholeObject, WhatHoldsAnotherPieceDoesNotHoldTheTouchedOne)
+{
+    const Where two     = [](double x, double y) { return std::abs(y) < 20e-3 && (x < -10e-3 || x > 10e-3); };
+    const Where farther = [](double x, double) { return x > 50e-3; };
+    try {
+        touched(sheetOf(two, farther, 1), -35e-3, 0);
+        FAIL() << "it would move off";
+    } catch (const Error& error) {
+        EXPECT_TRUE(holds(error.what(), {"reaches 0 nodes that are held", "expected at least 3"})) << error.what();
+    }
+    const Patch other = touched(sheetOf(two, farther, 1), 35e-3, 0);
+    EXPECT_GT(other.heldNodes, 100u);
+    const Where both = [](double x, double) { return std::abs(x) > 50e-3; };
+    EXPECT_NEAR(double(touched(sheetOf(two, both, 1), 35e-3, 0).heldNodes), double(other.heldNodes),
+                0.2 * double(other.heldNodes))
+        << "those of its own piece alone";
+}
+
+TEST(WholeObject, TheSheetsRigidityIsTheSameAtItsBorder)
+{
+    const Patch patch        = touched(sheetOf(isInStrip, isStripsRoot, 1), 45e-3, 0);
+    const auto [least, most] = rigiditiesOfSheet(patch);
+    const double whole       = kSheet.rigidity(kModulus);
+    EXPECT_NEAR(least / whole, 1, 1e-9);
+    EXPECT_NEAR(most / whole, 1, 1e-9);
+    EXPECT_NEAR(rigidityAtContact(patch) / whole, 1, 1e-9);
+}
+
 TEST(WholeObject, AFoundationIsFeltAsInAnyWindow)
 {
     PatchSettings fixed{.foundation = 1e6}, whole = kWhole;

@@ -31,16 +31,9 @@ double meanOf(const NodeField& field)
     return sum / double(field.values().size());
 }
 
-/// Returns k of the foundation, with its mean over the nodes [Pa/m].
-double foundationOf(const Plate& plate)
-{
-    const auto& shape = plate.foundationShape.values();
-    return plate.foundation * (shape.empty() ? 1 : geometricMean(shape));
-}
-
 } // namespace
 
-ShellShape meanShape(const Shell& shell)
+ShellShape meanShape(const Shell& shell, double below)
 {
     const double     window = shell.bending.grid.sizeX(), rigidity = geometricMean(shell.bending.rigidity.values());
     const double     thin = std::sqrt(rigidity * geometricMean(shell.membraneCompliance.values())) / window;
@@ -51,7 +44,7 @@ ShellShape meanShape(const Shell& shell)
     return {.thin       = stepOf(thin, kThin),
             .curved     = stepOf(most * window / thin, kStep),
             .shares     = {share(curvatures[0]), share(curvatures[1]), share(curvatures[2])},
-            .foundation = stepOf(foundationOf(shell.bending) * std::pow(window, 4) / rigidity, kStep)};
+            .foundation = stepOf(below * std::pow(window, 4) / rigidity, kStep)};
 }
 
 Shell shellOfShape(const ShellShape& shape, const Shell& like)

@@ -21,7 +21,8 @@ struct ShellShape {
 };
 
 /// Returns the shape of the shell of the mean rigidity and curvature, to 1 % of the curvature and of the foundation.
-[[nodiscard]] ShellShape meanShape(const Shell& shell);
+/// \param below  k of what lies below, its mean over the window without what is held [Pa/m]
+[[nodiscard]] ShellShape meanShape(const Shell& shell, double below);
 
 /// Returns a shell of this shape throughout, with a rigidity of 1 N m, on the grid and with the edges of another.
 [[nodiscard]] Shell shellOfShape(const ShellShape& shape, const Shell& like);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "engine/chart/coverage.h"
 #include "engine/core/extremes.h"
@@ -18,6 +19,30 @@ constexpr double kVoidOfPlates = 1e-4, kVoidOfShells = 3e-3, kVoidOfMembranes = 
 double shareOf(double covered, double beyond)
 {
     return beyond + (1 - beyond) * covered;
+}
+
+/// Returns for each node whether it lies on the piece of the sheet that is touched: separate pieces hang together only by
+/// what is next to nothing.
+std::vector<bool> touchedPiece(const Patch& patch, const NodeField& load)
+{
+    const PlateGrid&         grid = patch.plate.grid;
+    std::vector<bool>        is(grid.nodes());
+    std::vector<std::size_t> next;
+    const auto               reach = [&](std::size_t node) {
+        if (is[node] || !isOnSheet(patch, node)) return;
+        is[node] = true;
+        next.push_back(node);
+    };
+    for (std::size_t n = 0; n < grid.nodes(); ++n)
+        if (load.values()[n] > 0) reach(n);
+    while (!next.empty()) {
+        const int at = int(next.back()), i = at / grid.nodesZ(), j = at % grid.nodesZ();
+        next.pop_back();
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
+            for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
+                reach(std::size_t(a * grid.nodesZ() + b));
+    }
+    return is;
 }
 
 /// Returns how firmly a node is held [1]; nodes lose their hold over half the points' blur.
@@ -58,7 +83,7 @@ void cutOutCurvature(Patch& patch)
         for (std::size_t n = 0; n < patch.covered.values().size(); ++n) field->values()[n] *= patch.covered.values()[n];
 }
 
-void holdNodes(Patch& patch, const NodeField& held, double foundation)
+void holdNodes(Patch& patch, const NodeField& held, double foundation, const NodeField& load)
 {
     constexpr double kFirm  = 1000; // D / cell^4 [1]
     Plate&           plate  = patch.plate;
@@ -67,12 +92,13 @@ void holdNodes(Patch& patch, const NodeField& held, double foundation)
     const double     most   = extremesOf(sheet.values()).most;  // [N m]
     const double     firm   = kFirm * most / std::pow(cell, 4); // [Pa/m]
     const bool       varies = !plate.foundationShape.values().empty();
+    const auto       piece  = touchedPiece(patch, load);
     NodeField        shape(plate.grid);
     for (std::size_t n = 0; n < shape.values().size(); ++n) {
         const double below = foundation * (varies ? plate.foundationShape.values()[n] : 1);
         const double hold  = holdOf(held.values()[n]);
         shape.values()[n]  = below / firm + hold * plate.rigidity.values()[n] / most;
-        patch.heldNodes += hold > 0.5 && isOnSheet(patch, n);
+        patch.heldNodes += hold > 0.5 && piece[n];
     }
     plate.foundation      = firm;
     plate.foundationShape = std::move(shape);
@@ -99,9 +125,14 @@ void findSheared(Patch& patch, const NodeField& held)
 NodeField sheetRigidity(const Patch& patch)
 {
     NodeField sheet = patch.plate.rigidity;
-    for (std::size_t n = 0; n < patch.covered.values().size(); ++n)
-        sheet.values()[n] /= shareOf(patch.covered.values()[n], patch.beyond);
+    for (std::size_t n = 0; n < patch.covered.values().size(); ++n) sheet.values()[n] = sheetRigidity(patch, n);
     return sheet;
+}
+
+double sheetRigidity(const Patch& patch, std::size_t node)
+{
+    const double own = patch.plate.rigidity.values()[node];
+    return patch.covered.values().empty() ? own : own / shareOf(patch.covered.values()[node], patch.beyond);
 }
 
 Footprint onSheet(const Footprint& footprint, const NodeField& covered, const Footprint& instead)

@@ -27,15 +27,17 @@ void cutOutCurvature(Patch& patch);
 /// 1000 D / cell^4 a dent dies away within a fifth of a cell. Fills in patch.held and patch.heldNodes.
 /// \param held        share of each node that is held [1], see SoftObject::withHeld
 /// \param foundation  of the scene [Pa/m]
-void holdNodes(Patch& patch, const NodeField& held, double foundation);
+/// \param load        of the fingertip, on the sheet: only its piece counts in heldNodes
+void holdNodes(Patch& patch, const NodeField& held, double foundation, const NodeField& load);
 
 /// Finds where the sheet bends freely: neither at its border, nor where it is held. The moments jump there, over one cell
 /// instead of none, and their slopes are no forces. Fills in patch.sheared.
 /// \param held  as holdNodes() has it; empty: nothing is
 void findSheared(Patch& patch, const NodeField& held);
 
-/// Returns the rigidity of the sheet at the nodes [N m], also where cutOut() has taken it away.
+/// Returns the rigidity of the sheet at the nodes, or at one [N m], also where cutOut() has taken it away.
 [[nodiscard]] NodeField sheetRigidity(const Patch& patch);
+[[nodiscard]] double    sheetRigidity(const Patch& patch, std::size_t node);
 
 /// Returns the footprint's load on the sheet alone, of the same force: none lies beyond the border.
 /// \param covered   share of the sheet at the nodes [1]

@@ -49,7 +49,7 @@ std::vector<BenchRow> measureShell(const Map& map, int nodes, int side, int runs
     ComplianceTable    table;
     std::optional<int> steps;
     const auto         bend = [&](const auto& what) {
-        steps = solveTable(what, lattice, solver, kTableTolerance, table).solution.report.iterations;
+        steps = solveTable(what, plate.foundation, lattice, solver, kTableTolerance, table).solution.report.iterations;
     };
     const Clock               clock   = clockOf(solver);
     const std::vector<Timing> timings = takeTurns({{"a flat plate", {[&] { bend(plate); }}, clock},

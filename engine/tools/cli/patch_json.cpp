@@ -48,34 +48,10 @@ Json chartJson(const Chart& chart)
             {"signed_curvature", chart.curvature}};
 }
 
-bool isCovered(const Patch& patch, std::size_t node)
-{
-    return patch.covered.values().empty() || patch.covered.values()[node] > 0.5;
-}
-
-std::size_t nodesCovered(const Patch& patch)
-{
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < patch.plate.grid.nodes(); ++n) count += isCovered(patch, n);
-    return count;
-}
-
-/// Returns the least and the largest rigidity at the nodes that the object covers [N m].
-std::pair<double, double> rigiditiesOnSheet(const Patch& patch)
-{
-    double least = std::numeric_limits<double>::infinity(), most = 0;
-    for (std::size_t n = 0; n < patch.plate.grid.nodes(); ++n)
-        if (isCovered(patch, n)) {
-            least = std::min(least, patch.plate.rigidity.values()[n]);
-            most  = std::max(most, patch.plate.rigidity.values()[n]);
-        }
-    return {least, most};
-}
-
 Json windowJson(const Patch& patch)
 {
-    const PlateGrid& grid     = patch.window.grid;
-    const auto& [least, most] = rigiditiesOnSheet(patch);
+    const PlateGrid& grid    = patch.window.grid;
+    const auto [least, most] = rigiditiesOfSheet(patch);
     return {{"size", {grid.sizeX(), grid.sizeZ()}},
             {"cells", {grid.cellsX, grid.cellsZ}},
             {"spacing", grid.spacingX},
@@ -86,7 +62,7 @@ Json windowJson(const Patch& patch)
             {"rigidity_min", least},
             {"rigidity_max", most},
             {"of", patch.covered.values().empty() ? "contact" : "object"},
-            {"nodes_covered", nodesCovered(patch)},
+            {"nodes_covered", nodesOfSheet(patch)},
             {"nodes_held", patch.heldNodes}};
 }
 
@@ -98,6 +74,7 @@ Json shellJson(const SoftObject& object, const Patch& patch, const PatchSettings
     const bool isEnded = patch.curvature && std::isfinite(patch.shellLength);
     return {{"curvatures", {patch.principal.first, patch.principal.second}},
             {"flat", !patch.curvature},
+            {"flat_because", patch.flatBecause.empty() ? Json() : Json(patch.flatBecause)},
             {"fit_radius", patch.curvature ? Json(patch.curvature->radius) : Json()},
             {"length", isEnded ? Json(patch.shellLength) : Json()},
             {"window_lengths", isEnded ? Json(bentSize(patch) / patch.shellLength) : Json()},

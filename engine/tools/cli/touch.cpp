@@ -85,7 +85,9 @@ void printShell(const nlohmann::json& shell, double compliance)
 {
     const auto quantity = [](const nlohmann::json& number, const char* unit) { return formatQuantity(number, unit); };
     if (shell["flat"].get<bool>())
-        std::printf("  shell              flat here, bent as a plate");
+        std::printf("  shell              %s", shell["flat_because"].is_null()
+                                                   ? "flat here, bent as a plate"
+                                                   : "none, bent as a flat plate: see below");
     else
         std::printf("  shell              curvatures %s and %s", quantity(shell["curvatures"][0], "1/m").c_str(),
                     quantity(shell["curvatures"][1], "1/m").c_str());
