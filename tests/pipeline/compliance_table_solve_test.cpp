@@ -156,8 +156,17 @@ TEST(TableSolve, TablesOfHomogeneousSheetsAreFlatBesideWhatIsHeld)
     };
     EXPECT_LT(flatness(sheet), 1e-6);
     EXPECT_LT(flatness(sheet.withHeld(held)), 1e-6) << "nothing of the window is held";
-    Patch patch = deform(sheet.withHeld(held), middle, settings, host);
+    const Patch patch = deform(sheet.withHeld(held), middle, settings, host);
     EXPECT_NEAR(patch.below, settings.foundation, 1e-6);
+
+    settings.foundation = 1e4;
+    const auto isNarrow = [&](const SoftObject& object) {
+        const auto said = warnings(deform(object, middle, settings, host), settings, 1e-3, object.material());
+        return std::ranges::any_of(
+            said, [](const std::string& one) { return one.find("is narrower than") != std::string::npos; });
+    };
+    EXPECT_TRUE(isNarrow(sheet));
+    EXPECT_TRUE(isNarrow(sheet.withHeld(held)));
 }
 
 /// The law before the first table, on a dome: it was that of a flat plate, six times too soft.
