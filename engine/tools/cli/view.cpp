@@ -22,6 +22,7 @@
 #include "engine/tools/cli/named_option.h"
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/session_run.h"
+#include "engine/tools/gui/glfw_display.h"
 #include "engine/tools/gui/glfw_window.h"
 #include "engine/tools/gui/panel_frame.h"
 #include "engine/tools/gui/window_memory.h"
@@ -208,7 +209,9 @@ void showIn(GlfwWindow& window, const ViewOptions& o, WorkbenchSettings& setting
     std::optional<PanelFrame> panels; // outlives what draws it and what feeds it
     compute::ContextSettings  gpu{.processor = o.drawOn};
     if (o.validate) gpu.validation = compute::Validation::synchronization;
-    SurfaceRenderer renderer(gpu, window.link());
+    std::optional<CrashesWithDisplay> first(std::in_place);
+    SurfaceRenderer                   renderer(gpu, window.link());
+    first.reset();
     if (!o.noPanels && PanelFrame::available()) panels.emplace(window.scale());
     glm::ivec2 last{};
     settings.titled = [&window](const std::string& name) { window.setTitle(name + " - Palpate"); };

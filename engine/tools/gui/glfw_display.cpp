@@ -2,8 +2,12 @@
 
 #include <atomic>
 #include <csetjmp>
+#include <string_view>
 
 #include <dlfcn.h>
+#include <poll.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <GLFW/glfw3.h>
 
@@ -23,6 +27,7 @@ using SetOnGone      = void(Display*, OnGone*, void*);
 using OnLastWords    = int(Display*);
 using SetOnLastWords = OnLastWords*(OnLastWords*);
 using Unlock         = void(Display*);
+using NumberOf       = int(Display*);
 
 Unlock* unlock = nullptr; // XUnlockDisplay
 
@@ -41,7 +46,35 @@ int notice(Display* display)
     std::longjmp(wayOut, 1);
 }
 
+int              socketOfDisplay = -1; // of X; other desktops have none
+struct sigaction before {};
+
+/// Of SIGSEGV; nothing here allocates or locks.
+void endWithDisplay(int number)
+{
+    pollfd         display{socketOfDisplay, POLLIN, 0};
+    constexpr auto kSentence = std::string_view("palpate: the display has gone, and the window with it\n");
+    if (::poll(&display, 1, 0) == 1 && (display.revents & (POLLHUP | POLLERR | POLLNVAL)) != 0) {
+        const auto written = ::write(STDERR_FILENO, kSentence.data(), kSentence.size());
+        ::_exit(written == ssize_t(kSentence.size()) ? 2 : 1);
+    }
+    ::sigaction(number, &before, nullptr); // the same instruction crashes again
+}
+
 } // namespace
+
+CrashesWithDisplay::CrashesWithDisplay()
+{
+    if (socketOfDisplay < 0) return;
+    struct sigaction now {};
+    now.sa_handler = endWithDisplay;
+    ::sigaction(SIGSEGV, &now, &before);
+}
+
+CrashesWithDisplay::~CrashesWithDisplay()
+{
+    if (socketOfDisplay >= 0) ::sigaction(SIGSEGV, &before, nullptr);
+}
 
 bool startDisplay()
 {
@@ -53,7 +86,10 @@ bool startDisplay()
     // A driver that meets the end by Xlib, outside of our calls, goes on with what means nothing: libX11 1.7 and later.
     const auto displayOf = find<Display*()>(RTLD_DEFAULT, "glfwGetX11Display");
     const auto onGone    = x11 ? find<SetOnGone>(x11, "XSetIOErrorExitHandler") : nullptr;
-    if (Display* const display = displayOf ? displayOf() : nullptr; display && onGone)
+    const auto numberOf  = x11 ? find<NumberOf>(x11, "XConnectionNumber") : nullptr;
+    Display*   display   = displayOf ? displayOf() : nullptr;
+    if (display && numberOf) socketOfDisplay = numberOf(display);
+    if (display && onGone)
         onGone(
             display, [](Display*, void*) {}, nullptr);
     return true;

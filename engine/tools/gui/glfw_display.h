@@ -16,6 +16,18 @@ namespace palp {
 /// \thread the program's first
 bool withDisplay(const std::function<void()>& calls);
 
+/// While it lives, a crash beside a display that has gone ends the program by one sentence and exit code 2, any other one as
+/// always. For a driver's first questions of a display, before there is a recording, paint or a force: Mesa 22 reads an
+/// answer of XFixes that never came (10 of 1000 windows whose display goes just then).
+/// \thread the program's first, one at a time
+class CrashesWithDisplay {
+public:
+    CrashesWithDisplay();
+    CrashesWithDisplay(const CrashesWithDisplay&)            = delete;
+    CrashesWithDisplay& operator=(const CrashesWithDisplay&) = delete;
+    ~CrashesWithDisplay();
+};
+
 /// Returns whether the display has gone since.
 [[nodiscard]] bool displayHasGone() noexcept;
 
