@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "engine/capi/detail/border.h"
+#include "engine/core/quantity.h"
 #include "engine/plate/plate_solver.h"
 
 // The plate alone.
@@ -60,6 +61,10 @@ int palpate_plate_solve(const palpate_plate* plate, const double* forces, double
         PlateSolver         solver("host");
         const PlateSolution solution = solver.solve(of, load, tolerance);
         std::ranges::copy(solution.deflection.values(), deflection);
-        if (error) *error = solution.report.errorEstimate.value_or(std::numeric_limits<double>::quiet_NaN());
+        const double estimate = solution.report.errorEstimate.value_or(std::numeric_limits<double>::quiet_NaN());
+        if (error) *error = estimate;
+        if (!solution.report.converged)
+            throw Error("the plate: expected an error of at most " + formatNumber(tolerance) + ", found about " +
+                        formatNumber(estimate) + " or more, relative; take fewer cells or hold it at more sides");
     });
 }

@@ -52,6 +52,7 @@ Patch patchAt(const palpate_object& object, const double* place, const double* f
 {
     Patch patch = deform(object.object, contactAt(object, place, from), object.scene.patch, solver);
     demandDeformed(patch, "try a larger window");
+    demandConverged(patch);
     return patch;
 }
 

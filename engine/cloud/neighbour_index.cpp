@@ -119,7 +119,18 @@ struct IndexFrame {
 
     [[nodiscard]] glm::dvec3 to(const glm::dvec3& position) const noexcept { return (position - centre) * scale; }
 
-    /// Returns the cell [1] of a coordinate [index units] along the Morton curve; strays lie in the outermost.
+    /// Returns where a point [index units] comes along a curve: strays after all others, on one of their own with wider
+    /// cells, so that an object that lies off is not one heap.
+    [[nodiscard]] std::uint64_t code(const glm::dvec3& p) const noexcept
+    {
+        static_assert(kMortonCells <= 1 << 21, "three of them leave a bit");
+        constexpr std::uint64_t kStray = std::uint64_t(1) << 63;
+        const bool              stray  = largest(p) > 1;
+        const glm::dvec3        in     = stray ? p / reach : p;
+        return mortonCode(cell(in.x), cell(in.y), cell(in.z)) | (stray ? kStray : 0);
+    }
+
+    /// Returns the cell [1] of a coordinate from -1 to 1.
     [[nodiscard]] static std::uint32_t cell(double x) noexcept
     {
         return static_cast<std::uint32_t>(std::clamp((x + 1) * (0.5 * kMortonCells), 0.0, kMortonCells - 1.0));
@@ -145,9 +156,7 @@ struct IndexFrame {
     std::vector<Key> keys(positions.size());
     inParallel(positions.size(), kPiece, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const glm::dvec3 p = frame.to(positions[i]);
-            keys[i]            = {mortonCode(IndexFrame::cell(p.x), IndexFrame::cell(p.y), IndexFrame::cell(p.z)),
-                                  static_cast<std::uint32_t>(i)};
+            keys[i] = {frame.code(frame.to(positions[i])), static_cast<std::uint32_t>(i)};
         }
     });
     if (!std::is_sorted(keys.begin(), keys.end())) sortInParallel(keys);
@@ -464,7 +473,8 @@ void NeighbourIndex::Impl::gatherRising(const FloatSphere& sphere, const glm::dv
         }
         for (; inside != 0; inside &= inside - 1) {
             const auto lane = std::uint32_t(std::countr_zero(inside));
-            if (surely(distance2[lane]) || squaredDistance(exact[first + lane], centre) <= radius2) *to++ = first + lane;
+            if (surely(distance2[lane]) || squaredDistance(exact[first + lane], centre) <= radius2)
+                *to++ = first + lane;
         }
     }
     found.resize(std::size_t(to - found.data()));

@@ -628,11 +628,15 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
         patch.linearBecause = std::string("the force law ") + name(settings.forceLaw) + " does not feel the plate";
     else if (const auto why = whyUnsolvable(shell))
         patch.linearBecause = *why;
-    else if (quick && hasCoarseGrid(patch, settings))
-        patch.large = coarseLaw(patch, settings, shell, reach, solver);
     else
-        patch.large = largeLaw(shell, unitLoad(patch, settings), patch.response, reach, solver,
-                               std::max(settings.tolerance, kShapesTolerance));
+        try {
+            patch.large = quick && hasCoarseGrid(patch, settings)
+                              ? coarseLaw(patch, settings, shell, reach, solver)
+                              : largeLaw(shell, unitLoad(patch, settings), patch.response, reach, solver,
+                                         std::max(settings.tolerance, kShapesTolerance));
+        } catch (const Error& error) {
+            patch.linearBecause = error.what();
+        }
 }
 
 constexpr double kCubes[] = {1, 4}; ///< along a cell, of which one point each is taken, the first that will do [1]

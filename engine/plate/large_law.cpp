@@ -8,6 +8,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
+#include "engine/core/quantity.h"
 #include "engine/plate/load.h"
 #include "engine/plate/shell_energy.h"
 
@@ -108,20 +109,31 @@ public:
     [[nodiscard]] std::vector<NodeField> relax(std::span<const NodeField> loads) const
     {
         std::vector<NodeField> fields;
-        for (PlateSolution& of : solver_.solveAll(anchored_, loads, tolerance_))
+        for (PlateSolution& of : solver_.solveAll(anchored_, loads, tolerance_)) {
+            demandConverged(of.report);
             fields.push_back(std::move(of.deflection));
+        }
         return fields;
     }
 
     /// Returns w under forces on the linear shell.
     [[nodiscard]] NodeField bend(const NodeField& forces) const
     {
-        if (flat_) return solver_.solve(shell_.bending, forces, tolerance_).deflection;
-        const Footprint all(forces);
-        return solver_.solveFootprints(shell_, {&all, 1}, 0, tolerance_, tolerance_).whole.deflection;
+        const Footprint     all(forces);
+        const PlateSolution of = flat_ ? solver_.solve(shell_.bending, forces, tolerance_)
+                                       : solver_.solveFootprints(shell_, {&all, 1}, 0, tolerance_, tolerance_).whole;
+        demandConverged(of.report);
+        return of.deflection;
     }
 
 private:
+    static void demandConverged(const SolveReport& report)
+    {
+        if (!report.converged)
+            throw Error("the shapes of deep dents are not solved as well as asked for: an error of " +
+                        formatNumber(report.errorEstimate.value_or(1)) + " or more, relative");
+    }
+
     const Shell& shell_;
     Plate        membrane_, anchored_;
     PlateSolver& solver_;

@@ -17,6 +17,7 @@
 #include "engine/core/quantity.h"
 #include "engine/plate/detail/hard_plates.h"
 #include "engine/plate/detail/memory_shortage.h"
+#include "engine/plate/detail/rigidity_unit.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/plate/multigrid/multigrid_shell_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
@@ -149,8 +150,10 @@ struct PlateSolver::Multigrid {
         double prepare(compute::Context& on, const PlateKernels& by, const Plate& wanted, std::size_t wantedLoads,
                        double wantedTolerance)
         {
-            const auto began = std::chrono::steady_clock::now();
-            if (solver && sameButRigidity(plate, wanted) && tolerance == wantedTolerance && loads == wantedLoads) {
+            const auto   began   = std::chrono::steady_clock::now();
+            const double largest = extremesOf(wanted.rigidity.values()).most;
+            if (solver && isUnitOf(solver->unitRigidity(), largest) && sameButRigidity(plate, wanted) &&
+                tolerance == wantedTolerance && loads == wantedLoads) {
                 solver->setRigidity(wanted.rigidity, wanted.foundationShape);
             } else {
                 solver.reset(); // its memory goes before the next one's comes
@@ -681,12 +684,13 @@ FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const F
         ShellSolution of = solver.solve(loads[n].load(shell.bending.grid));
         solution.responses.push_back(responseOf(loads[n], of.deflection));
         solution.responses.back().work += shear.workOf(of.deflection) - squeezeWork(shell, of.deflection, loads[n]);
-        if (n != whole) continue;
-        SolveReport& report       = solution.whole.report;
-        report.solver             = kReference;
-        report.errorEstimate      = of.errorEstimate;
-        report.converged          = of.errorEstimate * of.errorEstimate <= tolerance; // as for plates
-        solution.whole.deflection = std::move(of.deflection);
+        SolveReport& report    = solution.whole.report;
+        const bool   converged = of.errorEstimate * of.errorEstimate <= tolerance; // as for plates
+        if (n == whole) solution.whole.deflection = std::move(of.deflection);
+        if (!report.converged || (converged && n != whole)) continue; // the first that did not, else the whole one's
+        report.solver        = kReference;
+        report.errorEstimate = of.errorEstimate;
+        report.converged     = converged;
     }
     using Milliseconds                      = std::chrono::duration<double, std::milli>;
     solution.whole.report.setUpMilliseconds = Milliseconds(made - began).count();
@@ -703,7 +707,9 @@ FootprintSolution PlateSolver::byReference(const Plate& plate, std::span<const F
     FootprintSolution          solution;
     for (std::size_t n = 0; n < loads.size(); ++n)
         solution.responses.push_back(responseOf(loads[n], solutions[n].deflection));
-    solution.whole = std::move(solutions[whole]);
+    const SolveReport worst = reportOf(solutions);
+    solution.whole          = std::move(solutions[whole]);
+    if (!worst.converged) solution.whole.report = worst;
     return solution;
 }
 

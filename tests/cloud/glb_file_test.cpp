@@ -83,6 +83,25 @@ TEST(GlbFile, NodesPlaceTheirMeshesOneWithinTheOther)
     EXPECT_LT(glm::length(loaded.cloud.positions()[5] - glm::dvec3(10, 2, 5)), 1e-12);
 }
 
+/// glTF 2.0, 3.7.4: a mirror turns the order of a triangle's corners around, two do not.
+TEST(GlbFile, AMirroredNodesTrianglesFaceTheSameWay)
+{
+    const auto facing = [](const std::string& nodes) {
+        const LoadedCloud   loaded = read(with(R"("nodes": [{"mesh": 0}])", R"("nodes": )" + nodes));
+        std::vector<double> up;
+        for (const Triangle& t : loaded.faces) {
+            const auto p = loaded.cloud.positions();
+            up.push_back(glm::normalize(glm::cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]])).z);
+        }
+        return up;
+    };
+    const std::vector<double> up{1, 1};
+    EXPECT_EQ(facing(R"([{"mesh": 0}])"), up);
+    EXPECT_EQ(facing(R"([{"mesh": 0, "scale": [-2, 1, 1]}])"), up);
+    EXPECT_EQ(facing(R"([{"mesh": 0, "scale": [-1, -1, 1]}])"), up);
+    EXPECT_EQ(facing(R"([{"children": [1], "scale": [-1, 1, 1]}, {"mesh": 0, "scale": [1, -3, 1]}])"), up);
+}
+
 TEST(GlbFile, EachAxisHasAScaleOfItsOwn)
 {
     const LoadedCloud loaded =

@@ -68,6 +68,13 @@ const char* const kE =
     "d7dd5da388c7bda94bdbbde97a957b83c14cf7b3cfc2ddbfdc6c7667b962e93ee34792fbae4f4bdd5b379c72b7bcdae7"
     "7eb7649dfb97fba5eedfd4a7b96b4ebaed3e5f9ccda3f3cf1e77b92bcfdc9b572e72e75f7bcc1d00e77b5fdac0010000";
 
+/// B in two members of gzip, as bgzip and the joining of files make them, and zeros after them.
+const char* const kF =
+    "1f8b08000000000002038b6164200a30333001310b032314a20226060e30ddb01f48380069207600d1f6a87883338486"
+    "1a494500002ebba99ec80000001f8b08000000000002036360201d3002f19b9b7af6ebd3aded409881a1c11e28e40044"
+    "0e0c14823c6d43881d4ccc2cac6cec1c9c5cdc3cbc7cfc028242c222a262e212005cc3d310b000000000000000000000"
+    "00";
+
 std::string bytesOf(std::string_view hex)
 {
     std::string bytes;
@@ -147,6 +154,12 @@ TEST(VolumeGrid, TheQformPlacesAFileWithoutSform)
     EXPECT_EQ(grid.node(1, 2, 3), 24);
     expectNear(grid.placeOf(1, 2, 3), {-1.76794924e-6, 10.79422805e-6, 11.00000062e-6});
     expectNear(grid.placeOf(0, 1, 0) - grid.placeOf(0, 0, 0), {7.01035714e-14, -2.61630079e-13, 4e-6});
+}
+
+TEST(VolumeGrid, APackedFileMayHaveSeveralMembers)
+{
+    const VolumeGrid whole = nifti(bytesOf(kB)), joined = nifti(bytesOf(kF));
+    for (int z = 0; z < 4; ++z) EXPECT_EQ(joined.node(1, 2, z), whole.node(1, 2, z));
 }
 
 TEST(VolumeGrid, AnInterceptThatIsNoNumberIsNone)

@@ -8,7 +8,9 @@
 #include <vector>
 
 #include <glm/gtc/quaternion.hpp>
+#include <glm/mat3x3.hpp>
 #include <glm/mat4x4.hpp>
+#include <glm/matrix.hpp>
 #include <nlohmann/json.hpp>
 
 #include "engine/cloud/detail/cloud_rows.h"
@@ -266,8 +268,10 @@ private:
             row[kSlotX] = p.x, row[kSlotY] = p.y, row[kSlotZ] = p.z;
             rows_.add(row, CloudRows::Place::unpacked);
         }
+        const bool mirrored = glm::determinant(glm::dmat3(place)) < 0; // which turns a triangle's corners around
         for (std::uint64_t n = 0; n < count; ++n) {
-            const std::uint64_t corner = indices.begin ? indexAt(indices, n) : n;
+            const std::uint64_t which  = mirrored && n % 3 != 0 ? n + 3 - 2 * (n % 3) : n; // 0, 2, 1
+            const std::uint64_t corner = indices.begin ? indexAt(indices, which) : which;
             if (corner >= corners.count)
                 fail(what + ": expected an index below " + std::to_string(corners.count) + ", found " +
                      std::to_string(corner));
@@ -296,13 +300,14 @@ private:
                  (is ? shownText(is->dump(), kMostOfWord) : std::string("none")));
         Accessor accessor;
         accessor.count           = index(json, "count", what);
-        accessor.type            = int(index(json, "componentType", what) % 10'000);
+        const std::uint64_t kind = index(json, "componentType", what);
+        accessor.type            = kind <= kFloat ? int(kind) : 0;
         const std::uint64_t each = accessor.type == 5121                              ? 1
                                    : accessor.type == 5123                            ? 2
                                    : accessor.type == 5125 || accessor.type == kFloat ? 4
                                                                                       : 0;
         if (each == 0)
-            fail(what + ": expected a componentType 5121, 5123, 5125 or 5126, found " + std::to_string(accessor.type));
+            fail(what + ": expected a componentType 5121, 5123, 5125 or 5126, found " + std::to_string(kind));
         const Json& view = element("bufferViews", index(json, "bufferView", what));
         if (index(view, "buffer", what) != 0 || has(element("buffers", 0), "uri"))
             fail(what + ": expected its numbers in the file itself, found them in another; save all of it as one .glb");

@@ -68,18 +68,29 @@ private:
         return std::size_t(in_.gcount());
     }
 
+    /// Reads on where all that was read is unpacked.
+    void refill()
+    {
+        if (zlib_.avail_in > 0) return;
+        in_.read(block_.data(), std::streamsize(block_.size()));
+        zlib_.next_in  = reinterpret_cast<Bytef*>(block_.data());
+        zlib_.avail_in = uInt(in_.gcount());
+    }
+
     std::size_t inflated(char* to, std::size_t count)
     {
         zlib_.next_out  = reinterpret_cast<Bytef*>(to);
         zlib_.avail_out = uInt(count); // blocks of a megabyte at most
         while (zlib_.avail_out > 0) {
-            if (zlib_.avail_in == 0) {
-                in_.read(block_.data(), std::streamsize(block_.size()));
-                zlib_.next_in  = reinterpret_cast<Bytef*>(block_.data());
-                zlib_.avail_in = uInt(in_.gcount());
-            }
+            refill();
             const int status = inflate(&zlib_, Z_NO_FLUSH);
-            if (status == Z_STREAM_END || status == Z_BUF_ERROR) break;
+            if (status == Z_STREAM_END) { // of a member; a file may have several, and zeros after the last
+                refill();
+                constexpr Bytef kFirst = 0x1f; // of gzip's header
+                if (zlib_.avail_in == 0 || *zlib_.next_in != kFirst || inflateReset(&zlib_) != Z_OK) break;
+                continue;
+            }
+            if (status == Z_BUF_ERROR) break;
             if (status != Z_OK)
                 throw Error(name_ + ": byte " + std::to_string(taken_) +
                             " when unpacked: the compressed data is damaged; is it a whole file of gzip?");

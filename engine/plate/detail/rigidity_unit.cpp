@@ -1,5 +1,7 @@
 #include "engine/plate/detail/rigidity_unit.h"
 
+#include <cmath>
+
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 
@@ -17,6 +19,17 @@ void checkFits(double rigidity, double unit)
 }
 
 } // namespace
+
+double rigidityUnit(double largest) noexcept
+{
+    return std::ldexp(1.0, std::ilogb(largest));
+}
+
+bool isUnitOf(double unit, double largest) noexcept
+{
+    constexpr double kApart = 1e3; // [1]
+    return largest < kApart * unit && largest > unit / kApart;
+}
 
 Extremes inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative)
 {

@@ -5,6 +5,15 @@
 
 namespace palp {
 
+/// Returns the unit of rigidities up to this one: a power of two, so that numbers relative to it have the same digits
+/// whatever the unit is.
+/// \param largest  [N m], > 0
+[[nodiscard]] double rigidityUnit(double largest) noexcept;
+
+/// Returns whether a unit serves for rigidities up to this one [N m]: products of several of them stay far from the ends of
+/// 32 bits.
+[[nodiscard]] bool isUnitOf(double unit, double largest) noexcept;
+
 /// Writes rigidities for the shaders: relative to a unit, in 32 bits.
 /// \param rigidities, unit  [N m], > 0
 /// \return the least and the largest rigidity [N m]

@@ -136,15 +136,16 @@ struct MultigridPlateSolver::Impl {
     int                        lastSteps = kStepsOfLists.back(); ///< of the last solve
 
     Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted)
-        : Impl(processor, kernels, given, wanted, gridHierarchy(given, largest(given.rigidity), kernels.coarsestCells))
+        : Impl(processor, kernels, given, wanted,
+               gridHierarchy(given, rigidityUnit(largest(given.rigidity)), kernels.coarsestCells))
     {
     }
 
     Impl(compute::Context& processor, const PlateKernels::All& kernels, const Plate& given, const Settings& wanted,
          GridHierarchy grids)
         : context(processor), k(kernels), plate(withoutRigidity(given)), settings(rounded(wanted)),
-          unitRigidity(largest(given.rigidity)), loads(std::uint32_t(wanted.loads)), stiffness(grids.stiffness),
-          passes(processor, kernels, std::move(grids), loads),
+          unitRigidity(rigidityUnit(largest(given.rigidity))), loads(std::uint32_t(wanted.loads)),
+          stiffness(grids.stiffness), passes(processor, kernels, std::move(grids), loads),
           units(context, "metres per unit", 4 * std::size_t(loads), Intent::processor),
           hostRigidity(context, passes.levels[0].rigidity), hostLoads(context, passes.levels[0].load),
           hostUnits(context, units), hostState(context, "state for the host", passes.state.bytes(), Intent::readback),
@@ -544,6 +545,11 @@ NodeField MultigridPlateSolver::deflectionOf(std::size_t load) const
 {
     PALP_EXPECT(load < impl_->loads, "there is no load " + std::to_string(load));
     return impl_->readAnswer(load);
+}
+
+double MultigridPlateSolver::unitRigidity() const noexcept
+{
+    return impl_->unitRigidity;
 }
 
 double MultigridPlateSolver::rounding() const noexcept

@@ -150,6 +150,9 @@ public:
     /// Returns what it would be if conjugate gradients were in floats [1].
     [[nodiscard]] double roundingInFloats() const noexcept;
 
+    /// Returns what the kernels' rigidity is relative to, see rigidityUnit() [N m].
+    [[nodiscard]] double unitRigidity() const noexcept;
+
     /// The commands of the lists; each waits for the one before it.
     struct CommandCounts {
         int prepare = 0, prepareCopies = 0; ///< dispatches and copies for a new rigidity

@@ -321,6 +321,11 @@ static void try_plates(void)
     CLAIM(refused(palpate_plate_solve(&plate, f, 1e-4, w, NULL), "edges"));
     plate.edges[0] = plate.edges[1] = plate.edges[2] = plate.edges[3] = PALPATE_FREE;
     CLAIM(refused(palpate_plate_solve(&plate, f, 1e-4, w, NULL), "rigid body"));
+    plate.cells_x = plate.cells_z = kCells - 1;
+    plate.foundation              = 1.1e-14 * pow(kCells - 1, 4); /* doubles hardly feel it */
+    error                         = 0;
+    CLAIM(refused(palpate_plate_solve(&plate, f, 1e-4, w, &error), "an error of at most") && error > 1e-4);
+    plate.foundation = 0;
     plate.cells_x = 1 << 30;
     CLAIM(refused(palpate_plate_solve(&plate, f, 1e-4, w, NULL), "4 to 4096"));
     free(D);

@@ -324,6 +324,21 @@ TEST(PlateSolver, FootprintsHaveTheBitsOfTheHostWhereTheyAreAskedFor)
 }
 
 /// As many as the table of a moving contact has, on every processor and by the reference alone.
+/// Each to the bit: maps of felt stiffness hand places to as many solvers as there are cores.
+TEST(PlateSolver, APlatesAnswerDoesNotDependOnThosesBefore)
+{
+    const NodeField load = pointLoad(plateOf(32, 1).grid, 1, 0.5, 0.5);
+    const auto alone = [&](const Plate& plate) { return PlateSolver("host").solve(plate, load).deflection.values(); };
+    Plate      soft = plateOf(32, 3), stiff = plateOf(32, 7), rock = plateOf(32, 5), jelly = plateOf(32, 5);
+    for (double& d : soft.rigidity.values()) d *= 1.3e-3 / 3;
+    for (double& d : stiff.rigidity.values()) d *= 0.0877;
+    for (double& d : rock.rigidity.values()) d *= 1e12;
+    for (double& d : jelly.rigidity.values()) d *= 1e-7;
+    PlateSolver one("host");
+    for (const Plate* plate : {&soft, &stiff, &soft, &rock, &jelly, &stiff})
+        EXPECT_EQ(one.solve(*plate, load).deflection.values(), alone(*plate));
+}
+
 TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
 {
     for (const std::string& name : {processorOfTests(), std::string(PlateSolver::kReference)}) {
