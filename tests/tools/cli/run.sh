@@ -524,6 +524,14 @@ bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance na
 bad 'peers on an even grid' 'multiple of 4' bench --nodes 64
 bad 'peers on a giant' '--nodes' bench --nodes 2049
 bad 'peers in an unknown case' 'new_map' bench --cases speed
+bad 'a long word' "unknown unit \"$(printf '%60s' | tr ' ' m)...\"" touch sample:skin --window "4$(printf '%300s' | tr ' ' m)"
+"$palpate" info "$(printf '%5000s' | tr ' ' a)" 2>err.txt
+[ "$(wc -c <err.txt)" -lt 300 ] && passed=$((passed + 1)) || complain 'a name of 5000 letters is repeated'
+bad 'samples and keys' '--keys has no effect with --samples' info --samples --keys
+bad 'samples of a file' 'SCENE has no effect with --samples' info skin.ply --samples
+bad 'places of no picture' '--picture-places belongs to --picture' perceive sample:skin --picture-places 20
+bad 'two pictures in one file' '--out and --picture: expected two files' perceive sample:skin --out p.svg --picture ./p.svg
+bad 'a hand without frames' '--hand belongs to --frames' render sample:skin --hand press --out no.png
 bad 'peers on an unknown map' 'disc_100' bench --maps cubic
 bad 'too few runs for quartiles' '--runs' bench --runs 5
 bad 'the reference as its own peer' 'reference' bench --solver reference
