@@ -420,6 +420,7 @@ bad 'a scene whose name no file can have' 'File name too long' run "$long" --clo
 mkdir gone && { (cd gone && rmdir ../gone && "$palpate" run "$place/scene.json" --clock virtual --seconds 0.1 --record "$place/elsewhere" >../out.txt 2>"$place/err.txt")
     [ $? -eq 2 ] && grep -q '^palpate: the current folder: ' err.txt && passed=$((passed + 1)) || complain "a folder that is gone: $(cat err.txt)"; }
 bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
+kill -TERM $session # as timeout(1), which signals its child and its group
 python3 -c "
 # the lowest bit of the last tick's force z, 124 bytes before the end
 data = bytearray(open('session/ticks.npy', 'rb').read()); data[-124] ^= 1; open('session/ticks.npy', 'wb').write(data)" 2>/dev/null && {
