@@ -329,7 +329,16 @@ printf '0,0,0,0\n0.1,nan,0,0\n' >hand.csv
 bad 'a hand that is not a number' hand.csv run scene.json --hand hand.csv
 printf 't;x;y;z\n0;0;0;0,01\n1;0;0;0,002\n' >decimal.csv
 bad 'decimal commas' 'expected 4 columns, found 5' run scene.json --hand decimal.csv
-bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
+bad 'a grip in a wrong unit' '"150 N/mm"' run scene.json --arm '150 N/mm'
+bad 'a speed in a unit of length' 'unknown unit "mm" in "5 mm"; known units: m/s' run scene.json --speed '5 mm'
+bad 'a time in another unit' 'unknown unit "min" in "2min"; known units: s, ms' run scene.json --seconds 2min
+good 'a time in milliseconds' run scene.json --clock virtual --seconds 100ms --json
+holds '"ticks": 100'
+bad 'a speed of a file' "--speed belongs to the hands press, circle, scan, found --hand session.csv" run scene.json --hand session.csv --speed 10mm/s
+bad 'a depth of a device' '--press-depth belongs to' run scene.json --hand falcon --press-depth 1mm
+printf 'time [ms], x [mm], y [mm], z [mm]\n0, 0, 0, 10\n100, 0, 0, 9\n' >units.csv
+good 'a hand in milliseconds' run scene.json --hand units.csv --clock virtual --json
+holds '"ticks": 100'
 bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
 bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
 bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
