@@ -79,6 +79,8 @@ good 'the map of presses' info felt.csv
 holds '300 N/m' && holds 'felt stiffness [N/m]'
 good 'a map' fit felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --page map.html --out fitted.ply
 holds 'left over'
+PALPATE_THICKNES=1 "$palpate" fit felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --json >out.txt 2>err.txt
+holds 'PALPATE_THICKNES is not used' && holds 'assumed metres'
 good 'what is left' info fitted.ply
 holds 'residual'
 bad 'a map is no object' 'palpate fit makes an object of it' touch felt.csv
@@ -87,6 +89,17 @@ bad 'a tip larger than the map' 'is the unit right' fit felt.csv --footprint-rad
 bad 'an object is no map' 'found a stiffness in Pa' fit fitted.ply --footprint-radius 8mm
 bad 'presses have no tip' 'take no keys of scenes' fit probes.csv --footprint-radius 8mm
 bad 'a page of another kind' 'ends in .html' fit probes.csv --page probes.svg
+cp probes.csv kept.csv
+bad 'a map over its presses' '--out: ./probes.csv is read as well, and would be overwritten' fit probes.csv --out ./probes.csv
+ln probes.csv linked.html
+bad 'a page over its presses' '--page: linked.html is read as well' fit probes.csv --page linked.html
+cmp -s probes.csv kept.csv && rm linked.html && passed=$((passed + 1)) || complain 'fit wrote over its presses'
+sed 1q probes.csv >one.csv && sed -n 2,11p probes.csv >>one.csv
+PALPATE_THICKNES=1 "$palpate" fit one.csv >out.txt 2>err.txt && grep -q '^palpate: warning: .*PALPATE_THICKNES is not used' err.txt && passed=$((passed + 1)) ||
+    complain "fit does not name a variable that nothing reads: $(cat err.txt)"
+holds ': 1 press, 95'
+sed 's/^probe/press/' probes.csv >unnamed.csv
+bad 'places of presses without names' 'name them by a column "probe"' fit unnamed.csv
 sed 's/,\([0-9.]*\),\([0-9.]*,[0-9.]*,0\)$/,-\1,\2/' probes.csv >pulls.csv
 bad 'presses that pull' 'turn the sign' fit pulls.csv
 sed 's/ \[mm\]//' probes.csv >metres.csv
@@ -613,6 +626,13 @@ bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells
 # --- options that cannot apply
 for option in '--stiffness-property quality' '--stiffness-range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
     # shellcheck disable=SC2086  # an option and its value
+mkdir own && cp skin.ply own/deformed.ply && cp skin.ply own/kept.ply
+bad 'a touch over its cloud' '--out: own/deformed.ply is read as well' touch own/deformed.ply --out own
+(cd own && echo '{"cloud": "deformed.ply"}' >scene.json && ! "$palpate" touch scene.json --out . >/dev/null 2>&1 && cmp -s deformed.ply kept.ply && [ ! -e touch.json ]) &&
+    passed=$((passed + 1)) || complain 'a touch wrote over the cloud of its scene'
+cp deflection.npy own/rigidity.npy 2>/dev/null || cp 'a folder/rigidity.npy' own
+bad 'a touch over its law' '--out: own/rigidity.npy is read as well' touch own/kept.ply --stiffness 'grid:file=own/rigidity.npy,spacing=1' --out own
+bad 'a folder that is a stream' '--json without --out' touch sample:skin --json --out -
     bad "a sample with $option" "${option%% *}: expected a file" info sample:skin $option
 done
 bad 'an unknown unit on a sample' 'parsec' info sample:skin --length-unit parsec
@@ -630,7 +650,13 @@ bad 'an unknown command' 'frob' frob
 bad 'help on an unknown command' 'frob' help frob
 bad 'an answer that is no array' '.npy' solve plate.json --out plate.json
 cp plate.json plate.npy
-bad 'an answer over its problem' 'problem file itself' solve plate.npy --out ./plate.npy
+bad 'an answer over its problem' 'is read as well' solve plate.npy --out ./plate.npy
+cp w.npy D.npy && cp D.npy kept.npy
+sed 's/"cells":\[16,24\]/"cells":[32,48]/; s/"law":"constant","value":1/"law":"grid","file":"D.npy"/' plate.json >grid.json
+bad 'an answer over its rigidity' '--out: D.npy is read as well' solve grid.json --out D.npy
+sed 's/"cells":\[16,24\]/"cells":[32,48]/; s/"law":"point".*\]}/"law":"grid","file":"D.npy"}/' plate.json >load.json
+bad 'an answer over its load' '--out: ./D.npy is read as well' solve load.json --out ./D.npy
+cmp -s D.npy kept.npy && passed=$((passed + 1)) || complain 'solve wrote over what it read'
 sed 's/"constant","value"/"odd","value"/' plate.json >odd.json
 bad 'an unknown rigidity law' 'checker, grid' solve odd.json
 
@@ -877,8 +903,8 @@ mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
     bad 'beside the cloud' 'from its nearest point' $mesh 'at=1,1,1m radius=1mm smooth'
     bad 'no stroke' '--stroke' paint mesh.ply --out no.ply
     cp mesh.ply itself.ply
-    bad 'the cloud itself' '--out: ./itself.ply is the file of the cloud and would be overwritten' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
-    bad 'the cloud itself, converted' 'TARGET: itself.ply is the file of the cloud and would be overwritten' convert itself.ply itself.ply --length-unit mm
+    bad 'the cloud itself' '--out: ./itself.ply is read as well, and would be overwritten' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
+    bad 'the cloud itself, converted' 'TARGET: itself.ply is read as well, and would be overwritten' convert itself.ply itself.ply --length-unit mm
     cmp -s mesh.ply itself.ply && passed=$((passed + 1)) || complain 'a cloud was written over'
     bad 'another kind of file' '.ply' paint mesh.ply --stroke 'at=1,1,0 radius=1mm smooth' --out no.stl
     bad 'an option of files for a scene of a sample' '--stiffness-range: expected a file' paint scene.json --stiffness-range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
