@@ -467,9 +467,12 @@ near() {
 }
 bad 'a mass that no motor holds' '--mass: expected 50 g to 250 g, found "300 g": the motors could not hold it' calibrate --emulator --mass '300 g'
 bad 'a mass that is too small' '--mass: expected 50 g to 250 g, found "49 g"' calibrate --emulator --mass '49 g'
-bad 'a mass that is none' '--mass' calibrate --emulator --mass '200 N'
+bad 'a mass that is none' 'unknown unit "N" in "200 N"; known units: kg, g' calibrate --emulator --mass '200 N'
+bad 'a mass in another unit' 'unknown unit "mg" in "200mg"' calibrate --emulator --mass 200mg
+bad 'a firmware of what is emulated' '--falcon-firmware has no effect with --emulator' calibrate --emulator --falcon-firmware scene.json
 good 'calibrate, from counts that are twice too few' calibrate --emulator --falcon-counts 2100 --json
 holds '"counts_per_torque_before": 2100.0'
+holds '"why_no_hold": null'
 near counts_per_torque 4200 0.005
 near arm_kg 0.21 0.01
 near hold_s 0.02 0.1 # the emulator's 20 ms; an exchange is 1 ms
@@ -485,6 +488,7 @@ good 'run, calibrated' run scene.json --hand falcon-emulator --clock virtual --s
 grep -qF 'runs as its calibration found it' err.txt && passed=$((passed + 1)) || complain "run does not say that the emulator is calibrated: $(cat err.txt)"
 sed 's/"counts_per_torque": [0-9.]*/"counts_per_torque": 5000/' "$stored" >file.json && mv file.json "$stored"
 good 'calibrate anew, the heaviest mass' calibrate --emulator --mass 0.25
+grep -qF 'hang 250 g on the grip' err.txt && passed=$((passed + 1)) || complain "the mass that is hung: $(cat err.txt)"
 grep -qE 'counts per N m   (419.|420.|421.)   \(5000 before: the forces were 1\.19 times' out.txt && passed=$((passed + 1)) || complain "a second calibration: $(cat out.txt)"
 holds 'this Falcon is emulated, and no other has its numbers'
 holds "used by          --hand falcon-emulator, as every command uses a real Falcon's: $stored"
@@ -520,6 +524,14 @@ done
 # --- bad usage
 bad 'unknown option' 'unknown option --frobnicate; see palpate touch --help' touch sample:skin --frobnicate
 bad 'a slip in an option' 'palpate touch: unknown option --materal; did you mean --material?' touch sample:skin --materal skin
+bad 'a long word' "unknown unit \"$(printf '%60s' | tr ' ' m)...\"" touch sample:skin --window "4$(printf '%300s' | tr ' ' m)"
+"$palpate" info "$(printf '%5000s' | tr ' ' a)" 2>err.txt
+[ "$(wc -c <err.txt)" -lt 300 ] && passed=$((passed + 1)) || complain 'a name of 5000 letters is repeated'
+bad 'samples and keys' '--keys has no effect with --samples' info --samples --keys
+bad 'samples of a file' 'SCENE has no effect with --samples' info skin.ply --samples
+bad 'places of no picture' '--picture-places belongs to --picture' perceive sample:skin --picture-places 20
+bad 'two pictures in one file' '--out and --picture: expected two files' perceive sample:skin --out p.svg --picture ./p.svg
+bad 'a hand without frames' '--hand belongs to --frames' render sample:skin --hand press --out no.png
 bad 'a word too many' 'found "0.5N" where no further word is expected' touch sample:skin 0.5N
 bad 'a slip in a command' 'did you mean touch?' tuch sample:skin
 bad 'unknown sample' 'palm' touch sample:elbow
@@ -547,14 +559,6 @@ bad 'tolerance that is no number' '--tolerance' touch sample:skin --tolerance na
 bad 'peers on an even grid' 'multiple of 4' bench --nodes 64
 bad 'peers on a giant' '--nodes' bench --nodes 2049
 bad 'peers in an unknown case' 'new_map' bench --cases speed
-bad 'a long word' "unknown unit \"$(printf '%60s' | tr ' ' m)...\"" touch sample:skin --window "4$(printf '%300s' | tr ' ' m)"
-"$palpate" info "$(printf '%5000s' | tr ' ' a)" 2>err.txt
-[ "$(wc -c <err.txt)" -lt 300 ] && passed=$((passed + 1)) || complain 'a name of 5000 letters is repeated'
-bad 'samples and keys' '--keys has no effect with --samples' info --samples --keys
-bad 'samples of a file' 'SCENE has no effect with --samples' info skin.ply --samples
-bad 'places of no picture' '--picture-places belongs to --picture' perceive sample:skin --picture-places 20
-bad 'two pictures in one file' '--out and --picture: expected two files' perceive sample:skin --out p.svg --picture ./p.svg
-bad 'a hand without frames' '--hand belongs to --frames' render sample:skin --hand press --out no.png
 bad 'peers on an unknown map' 'disc_100' bench --maps cubic
 bad 'too few runs for quartiles' '--runs' bench --runs 5
 bad 'the reference as its own peer' 'reference' bench --solver reference
@@ -732,7 +736,7 @@ JSON
     good 'the same once more' render sample:skin $small --out again.png
     cmp -s skin.png again.png && passed=$((passed + 1)) || complain 'the same picture has other bytes'
     good 'a picture of a scene' render soft.json --size 200x150 --force '0.5 N' --colour stiffness --colour-map cividis --dark --exaggerate 3 --view whole --out soft.png --json
-    for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000'; do holds "$key"; done
+    for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000' '"warnings": ['; do holds "$key"; done
     good 'a picture of a file' render skin.ply --place 0,0,0.0015 --window 40mm --cells 32 --size 64x48 --out file.png
     png file.png 64 48
     good 'a picture of a bare file' render bare.csv --place 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
@@ -1018,7 +1022,7 @@ good 'perceive' perceive soft.json --places 5 --reach 8mm --out path.svg --pictu
 holds 'a prediction, not a study'
 for file in path.svg object.svg; do [ -s $file ] && passed=$((passed + 1)) || complain "perceive did not write $file"; done
 good 'perceive as JSON' perceive soft.json --places 5 --reach 8mm --along 0,1,0 --json
-for key in '"prediction": true' '"weber_fraction": 0.07' '"floor_is_low": true' '"right_answers"' '"steps_in_passing"' '"felt_stiffness"' '"direction"'; do holds "$key"; done
+for key in '"prediction": true' '"weber_fraction": 0.07' '"floor_is_low": true' '"right_answers"' '"steps_in_passing"' '"felt_stiffness"' '"direction"' '"warnings": ['; do holds "$key"; done
 bad 'a path that leaves the surface' 'along the surface' perceive soft.json --along 0,0,1
 bad 'a path without a direction' 'expected a vector' perceive soft.json --along 0,0,0
 bad 'a reach of nothing' '--reach' perceive soft.json --reach 0
