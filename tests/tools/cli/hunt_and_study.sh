@@ -140,7 +140,7 @@ cut -d, -f1-3 study/P02/trials.csv >columns.txt
 printf 'participant,trial,block\nP02,1,1\nP02,2,1\nP02,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated after a kill: $(cat study/P02/trials.csv)"
 : >input
 good 'analysed' study --analyse study --plot shares.svg --json
-for word in '"participants": 2' '"trials": 6' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
+for word in '"participants": 2' '"trials": 6' '"left_out": 0' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
 good 'in words' study --analyse study
 holds 'predicted, not measured'
 grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'
@@ -148,7 +148,10 @@ sed 's/4e5/5e5/' plan.json >changed.json
 bad 'the plan has changed' 'has changed since' study changed.json --participant P01 --out study --clock virtual
 bad 'a new participant with another plan' 'choose another --out' study changed.json --participant P06 --out study --clock virtual
 [ ! -e study/P06 ] && pass || complain 'a refused participant has a folder'
-cp -r study answers && sed -i '3s/,2,1,/,7,1,/' answers/P01/trials.csv
+cp -r study answers && sed -i 's/^P02,/P07,/' answers/P02/trials.csv
+bad 'two participants of one name' '"P01" again, who is also in study/P01' study --analyse study answers/P01
+bad 'a table of another participant' 'expected the participant of study.json, "P02", found "P07"' study --analyse answers
+sed -i '3s/,2,1,/,7,1,/' answers/P01/trials.csv
 bad 'a table without a trial' 'P01/trials.csv: line 3: column trial: expected 2, found 7' study --analyse answers
 sed -i 's/4 mm/5 mm/' sheet.json
 bad 'a scene of it has changed' 'has changed since' study plan.json --participant P01 --out study --clock virtual
@@ -201,6 +204,9 @@ holds '2 trials left out'
 (cd plans && "$palpate" study pair.json --participant P01 --out ../pairs --clock virtual >../out.txt 2>../err.txt) && pass || complain "from another folder: $(cat err.txt)"
 holds '3 of 3 trials'
 cp -r pairs older && sed -i '/"hand_path"/d' older/P01/study.json
+bad 'a run and an analysis' '--analyse' study plan.json --analyse study
+bad 'a folder and an analysis' '--analyse' study --analyse study --out other
+bad 'too short to feel' 'a force needs to come on' study short.json --participant P01 --out study
 sed -i 's/-0.001/-0.002/' plans/down.csv
 bad 'the path of its hand has changed' 'has changed since' study plans/pair.json --participant P01 --out pairs --clock virtual
 good 'which a study of an earlier version does not know' study plans/pair.json --participant P01 --out older --clock virtual
