@@ -177,9 +177,6 @@ printf '\n3\nq\n' >input
 good 'a hand in the air' study plan.json --participant P05 --out air --clock virtual --hand air.csv
 grep -q 'trial 1: nothing was felt' err.txt && pass || complain "nobody says that nothing was felt: $(cat err.txt)"
 : >input
-bad 'a run and an analysis' '--analyse' study plan.json --analyse study
-bad 'a folder and an analysis' '--analyse' study --analyse study --out other
-bad 'too short to feel' 'a force needs to come on' study short.json --participant P01 --out study
 bad 'nothing that was felt' '1 trial left out, because nothing was felt' study --analyse air
 bad 'a clock of an analysis' '--clock has no effect with --analyse' study --analyse study --clock virtual
 bad 'a long name' 'at most 64 characters, found 101' study plan.json --participant "$(printf '%100s' | tr ' ' P)1" --out study
@@ -204,12 +201,12 @@ holds '2 trials left out'
 (cd plans && "$palpate" study pair.json --participant P01 --out ../pairs --clock virtual >../out.txt 2>../err.txt) && pass || complain "from another folder: $(cat err.txt)"
 holds '3 of 3 trials'
 cp -r pairs older && sed -i '/"hand_path"/d' older/P01/study.json
-bad 'a run and an analysis' '--analyse' study plan.json --analyse study
-bad 'a folder and an analysis' '--analyse' study --analyse study --out other
-bad 'too short to feel' 'a force needs to come on' study short.json --participant P01 --out study
 sed -i 's/-0.001/-0.002/' plans/down.csv
 bad 'the path of its hand has changed' 'has changed since' study plans/pair.json --participant P01 --out pairs --clock virtual
 good 'which a study of an earlier version does not know' study plans/pair.json --participant P01 --out older --clock virtual
+bad 'a run and an analysis' '--analyse' study plan.json --analyse study
+bad 'a folder and an analysis' '--analyse' study --analyse study --out other
+bad 'too short to feel' 'a force needs to come on' study short.json --participant P01 --out study
 bad 'a plot of nothing' '--plot' study plan.json --participant P01 --plot x.svg
 [ ! -e study/P04 ] && [ ! -e study/Jo ] && [ ! -e P1 ] && pass || complain 'a refused study left a folder'
 

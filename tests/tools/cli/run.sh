@@ -420,6 +420,7 @@ session=$!
 n=0
 until [ -n "$(find stopped -name ticks.npy -size +4k 2>/dev/null)" ] || [ $n -gt 1200 ]; do sleep 0.1; n=$((n + 1)); done
 kill -TERM $session
+kill -TERM $session # as timeout(1), which signals its child and its group
 wait $session && grep -q '"finished": true' stopped/session.json && passed=$((passed + 1)) || complain "a session that is stopped: exit $? $(cat err.txt)"
 # Whoever removes, moves or cuts a recording while it is made is told that it is lost.
 for harm in 'rm -r stopped' 'mv stopped away' 'truncate -s 4000 stopped/ticks.npy'; do
@@ -442,7 +443,6 @@ bad 'a scene whose name no file can have' 'File name too long' run "$long" --clo
 mkdir gone && { (cd gone && rmdir ../gone && "$palpate" run "$place/scene.json" --clock virtual --seconds 0.1 --record "$place/elsewhere" >../out.txt 2>"$place/err.txt")
     [ $? -eq 2 ] && grep -q '^palpate: the current folder: ' err.txt && passed=$((passed + 1)) || complain "a folder that is gone: $(cat err.txt)"; }
 bad 'an unknown clock' 'expected real or virtual' run scene.json --clock wall
-kill -TERM $session # as timeout(1), which signals its child and its group
 python3 -c "
 # the lowest bit of the last tick's force z, 124 bytes before the end
 data = bytearray(open('session/ticks.npy', 'rb').read()); data[-124] ^= 1; open('session/ticks.npy', 'wb').write(data)" 2>/dev/null && {
@@ -626,10 +626,6 @@ bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
     [ $code -eq 2 ] && grep -qF 'out of memory' err.txt && ! grep -qF 'calling fini' err.txt
 ) && passed=$((passed + 1)) || complain "no memory: $(grep -F -e palpate: -e 'calling fini' err.txt)"
 mkdir full && : >full/out
-bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
-# --- options that cannot apply
-for option in '--stiffness-property quality' '--stiffness-range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
-    # shellcheck disable=SC2086  # an option and its value
 mkdir own && cp skin.ply own/deformed.ply && cp skin.ply own/kept.ply
 bad 'a touch over its cloud' '--out: own/deformed.ply is read as well' touch own/deformed.ply --out own
 (cd own && echo '{"cloud": "deformed.ply"}' >scene.json && ! "$palpate" touch scene.json --out . >/dev/null 2>&1 && cmp -s deformed.ply kept.ply && [ ! -e touch.json ]) &&
@@ -637,6 +633,10 @@ bad 'a touch over its cloud' '--out: own/deformed.ply is read as well' touch own
 cp deflection.npy own/rigidity.npy 2>/dev/null || cp 'a folder/rigidity.npy' own
 bad 'a touch over its law' '--out: own/rigidity.npy is read as well' touch own/kept.ply --stiffness 'grid:file=own/rigidity.npy,spacing=1' --out own
 bad 'a folder that is a stream' '--json without --out' touch sample:skin --json --out -
+bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
+# --- options that cannot apply
+for option in '--stiffness-property quality' '--stiffness-range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
+    # shellcheck disable=SC2086  # an option and its value
     bad "a sample with $option" "${option%% *}: expected a file" info sample:skin $option
 done
 bad 'an unknown unit on a sample' 'parsec' info sample:skin --length-unit parsec
@@ -986,13 +986,13 @@ JSON
     holds 'has hidden 1 nodule in this stiffness; palpate hunt and palpate view score'
     unused() { # unused COMMAND...: it tells of variables that nothing reads, one of each kind, and of no others
         env PALPATE_CELS=8 PALPATE_HAND_OVER=hold PALPATE_ODD=1 PALPATE_EMPTY= PALPATE_CELLS=32 \
-            PALPATE_HOST_ISA=portable PALPATE_HAPLY=localhost:10001 "$palpate" "$@" >out.txt 2>err.txt ||
+            PALPATE_HOST_ISA=portable PALPATE_HAPLY=localhost:10001 PALPATE_BUILD=build PALPATE_LIBRARY=none "$palpate" "$@" >out.txt 2>err.txt ||
             complain "unused variables, $1: exit $? $(cat err.txt)"
         cat err.txt >>out.txt
         holds "environment's PALPATE_CELS is not used; did you mean PALPATE_CELLS?"
         holds "environment's PALPATE_HAND_OVER is not used; the key is compliance_law now: PALPATE_COMPLIANCE_LAW"
         holds "environment's PALPATE_ODD is not used; palpate info --keys lists the keys"
-        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA|HAPLY) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
+        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA|HAPLY|BUILD|LIBRARY) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
     }
     unused info scan.json
     unused convert scan.json unused.ply
