@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "engine/core/contract.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 namespace {
@@ -26,7 +27,7 @@ std::string reasonOfErrno()
 
 [[noreturn]] void refuseToWrite(const std::filesystem::path& path, const std::string& reason)
 {
-    throw Error(path.string() + ": cannot be written: " + reason);
+    throw Error(shownText(path.string(), kMostOfPath) + ": cannot be written: " + reason);
 }
 
 /// Whether somebody else put this into a folder where anybody may write.
@@ -203,7 +204,7 @@ InputFile::Buffer::Buffer(const std::filesystem::path& path) : path_(path)
 {
     errno = 0;
     if (!open(path, std::ios::in | std::ios::binary))
-        throw Error(path.string() + ": cannot be read: " + reasonOfErrno());
+        throw Error(shownText(path.string(), kMostOfPath) + ": cannot be read: " + reasonOfErrno());
 }
 
 InputFile::Buffer::int_type InputFile::Buffer::underflow()
@@ -247,7 +248,7 @@ bool isThere(const std::filesystem::path& path)
 {
     std::error_code failure;
     const bool      there = std::filesystem::exists(path, failure);
-    if (failure) throw Error(path.string() + ": cannot be read: " + failure.message());
+    if (failure) throw Error(shownText(path.string(), kMostOfPath) + ": cannot be read: " + failure.message());
     return there;
 }
 

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "engine/core/contract.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 namespace {
@@ -29,6 +30,8 @@ constexpr std::array kRigidities  = {Unit{"N_m", 1}, Unit{"Nm", 1}, Unit{"N*m", 
 constexpr std::array kFoundations = {Unit{"Pa/m", 1}, Unit{"kPa/m", 1e3}, Unit{"MPa/m", 1e6}, Unit{"GPa/m", 1e9}};
 constexpr std::array kStiffnesses = {Unit{"N/m", 1}, Unit{"kN/m", 1e3}, Unit{"N/mm", 1e3}, Unit{"N/cm", 1e2}};
 constexpr std::array kTimes       = {Unit{"s", 1}, Unit{"ms", 1e-3}};
+constexpr std::array kSpeeds      = {Unit{"m/s", 1}, Unit{"mm/s", 1e-3}, Unit{"cm/s", 1e-2}};
+constexpr std::array kMasses      = {Unit{"kg", 1}, Unit{"g", 1e-3}};
 constexpr std::array kPerLengths  = {Unit{"1/m", 1}, Unit{"/m", 1}, Unit{"1/mm", 1e3}, Unit{"/mm", 1e3}};
 constexpr std::array kAngles      = {Unit{"rad", 1}, Unit{"deg", std::numbers::pi / 180}};
 
@@ -51,6 +54,10 @@ std::span<const Unit> unitsOf(Dimension dimension)
         return kAngles;
     case Dimension::time:
         return kTimes;
+    case Dimension::speed:
+        return kSpeeds;
+    case Dimension::mass:
+        return kMasses;
     case Dimension::perLength:
         return kPerLengths;
     case Dimension::none:
@@ -66,7 +73,7 @@ std::string listed(std::span<const Unit> units)
     return text.empty() ? "none: a plain number" : text;
 }
 
-std::string_view trimmed(std::string_view text)
+std::string_view trimmed(std::string_view text) noexcept
 {
     while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
     while (!text.empty() && text.back() == ' ') text.remove_suffix(1);
@@ -85,7 +92,7 @@ NumberAndUnit split(std::string_view text, std::string_view what)
     double                 number{};
     const auto [end, error] = std::from_chars(begin, body.data() + body.size(), number);
     if (error != std::errc() || !std::isfinite(number))
-        throw Error(std::string(what) + ": expected a finite number, found \"" + std::string(text) + "\"");
+        throw Error(std::string(what) + ": expected a finite number, found " + inQuotes(text));
     return {number, trimmed(body.substr(std::size_t(end - body.data())))};
 }
 
@@ -96,14 +103,31 @@ double parseQuantity(std::string_view text, Dimension dimension, std::string_vie
     const auto [number, unit] = split(text, what);
     const auto inSi           = [&, number = number](double one) {
         if (!std::isfinite(number * one))
-            throw Error(std::string(what) + ": expected a finite number, found \"" + std::string(text) + "\"");
+            throw Error(std::string(what) + ": expected a finite number, found " + inQuotes(text));
         return number * one;
     };
     if (unit.empty()) return inSi(siPerPlainNumber);
     for (const Unit& known : unitsOf(dimension))
         if (known.name == unit) return inSi(known.inSi);
-    throw Error(std::string(what) + ": unknown unit \"" + std::string(unit) + "\" in \"" + std::string(text) +
-                "\"; known units: " + listed(unitsOf(dimension)));
+    throw Error(std::string(what) + ": unknown unit " + inQuotes(unit) + " in " + inQuotes(text) +
+                "; known units: " + listed(unitsOf(dimension)));
+}
+
+ColumnHead columnHead(std::string_view cell) noexcept
+{
+    const std::size_t      open  = std::min(cell.find_first_of("[("), cell.size());
+    const std::size_t      close = cell.find_first_of("])", open);
+    const std::string_view name  = trimmed(cell.substr(0, open));
+    if (close == std::string_view::npos) return {name, {}};
+    const std::string_view unit = trimmed(cell.substr(open + 1, close - open - 1));
+    return {name, unit == "1" ? std::string_view() : unit};
+}
+
+double siPerUnitOf(const ColumnHead& head, Dimension dimension, const std::string& where)
+{
+    if (head.unit.empty()) return 1;
+    return parseQuantity("1 " + std::string(head.unit), dimension,
+                         where + ": column \"" + std::string(head.name) + "\"");
 }
 
 double metresPer(std::string_view lengthUnit)
@@ -120,7 +144,7 @@ glm::dvec3 parsePoint(std::string_view text, std::string_view what, double metre
     for (int k = 0; k < 3; ++k) {
         const std::size_t comma = rest.find(',');
         if ((comma == std::string_view::npos) != (k == 2))
-            throw Error(std::string(what) + ": expected three numbers x,y,z, found \"" + std::string(text) + "\"");
+            throw Error(std::string(what) + ": expected three numbers x,y,z, found " + inQuotes(text));
         point[k] = parseQuantity(rest.substr(0, comma), Dimension::length, what, metresPerPlainNumber);
         if (k < 2) rest.remove_prefix(comma + 1);
     }

@@ -7,7 +7,20 @@
 namespace palp {
 
 /// The dimension of a number given by a user; it decides which unit suffixes are known.
-enum class Dimension { length, force, pressure, rigidity, foundation, stiffness, angle, time, perLength, none };
+enum class Dimension {
+    length,
+    force,
+    pressure,
+    rigidity,
+    foundation,
+    stiffness,
+    angle,
+    time,
+    perLength,
+    none,
+    speed,
+    mass
+};
 
 /// Reads "4mm", "1.5 N", "0.3MPa", "2e-3": a finite number and a unit.
 /// \param siPerPlainNumber  SI units in one of a number without a unit
@@ -15,6 +28,17 @@ enum class Dimension { length, force, pressure, rigidity, foundation, stiffness,
 /// \throws Error naming `what`, the text and the units that are known
 [[nodiscard]] double parseQuantity(std::string_view text, Dimension dimension, std::string_view what,
                                    double siPerPlainNumber = 1);
+
+/// What the header of a table calls a column: "depth [mm]", "time(s)".
+struct ColumnHead {
+    std::string_view name, unit; ///< the unit is empty where there is none, or 1
+};
+[[nodiscard]] ColumnHead columnHead(std::string_view cell) noexcept;
+
+/// Returns the SI units in one of a column's unit; 1 where it has none.
+/// \param where  opens complaints, before the column's name
+/// \throws Error as parseQuantity() does
+[[nodiscard]] double siPerUnitOf(const ColumnHead& head, Dimension dimension, const std::string& where);
 
 /// Returns the metres in one unit of length: m, mm, cm, um, km, in, ft.
 /// \throws Error naming the units that are known

@@ -27,6 +27,9 @@ struct Utf8Character {
 /// The most of a file's own word that an error repeats [bytes].
 inline constexpr std::size_t kMostOfWord = 60;
 
+/// The most of a path that an error repeats [bytes].
+inline constexpr std::size_t kMostOfPath = 200;
+
 /// Returns a file's own word in quotes, at most kMostOfWord of it.
 [[nodiscard]] std::string inQuotes(std::string_view text);
 

@@ -72,11 +72,12 @@ struct Setting {
 };
 
 /// Reads the node values that {"law": "grid", "file": ...} names, on the file's own grid.
-NodeField readField(const JsonObject& law, const Setting& setting)
+NodeField readField(const JsonObject& law, const Setting& setting, PlateProblem& problem)
 {
     law.allowOnly({"law", "file"});
     const std::filesystem::path named = law.text("file"), path = setting.folder / named;
     if (named.empty()) law.refuse("file", "the path of a .npy file");
+    problem.files.push_back(path);
     const NodeField field = [&] {
         try {
             return readNpy(path);
@@ -157,10 +158,10 @@ std::optional<std::string> lostLaw(const JsonObject& law, const SpatialLaw& rule
            metres(grid.sizeZ()) + " with nodes every " + metres(spacingOf(grid)) + "?";
 }
 
-NodeField readMap(const JsonObject& law, const Quantity& of, const Setting& setting, std::vector<std::string>& warnings)
+NodeField readMap(const JsonObject& law, const Quantity& of, const Setting& setting, PlateProblem& problem)
 {
     if (law.text("law") == "grid") {
-        const NodeField given = readField(law, setting);
+        const NodeField given = readField(law, setting, problem);
         expectGood(given, of, law.where());
         return resampled(given, setting);
     }
@@ -170,7 +171,7 @@ NodeField readMap(const JsonObject& law, const Quantity& of, const Setting& sett
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j) map(i, j) = rule({i * grid.spacingX, 0, j * grid.spacingZ});
     expectGood(map, of, law.where());
-    if (auto warning = lostLaw(law, rule, map, grid)) warnings.push_back(std::move(*warning));
+    if (auto warning = lostLaw(law, rule, map, grid)) problem.warnings.push_back(std::move(*warning));
     return map;
 }
 
@@ -184,7 +185,7 @@ void readFoundation(const JsonObject& file, const Setting& setting, PlateProblem
         if (!(plate.foundation >= 0)) file.refuse("foundation", "a number [Pa/m] that is not negative, or a law");
         return;
     }
-    NodeField map    = readMap(file.object("foundation"), kFoundation, setting, problem.warnings);
+    NodeField map    = readMap(file.object("foundation"), kFoundation, setting, problem);
     plate.foundation = std::ranges::max(map.values());
     if (plate.foundation == 0) return;
     for (double& k : map.values()) k /= plate.foundation;
@@ -206,7 +207,7 @@ std::vector<double> readPlace(const JsonObject& object, std::string_view key, co
     return place;
 }
 
-NodeField readLoad(const JsonObject& load, const Setting& setting)
+NodeField readLoad(const JsonObject& load, const Setting& setting, PlateProblem& problem)
 {
     const PlateGrid&  grid = setting.solveGrid;
     const std::string law  = load.text("law");
@@ -224,7 +225,7 @@ NodeField readLoad(const JsonObject& load, const Setting& setting)
         const std::vector<double> centre = readPlace(load, "centre", grid);
         return gaussianLoad(grid, load.number("force"), centre[0], centre[1], load.positiveNumber("sigma"));
     }
-    if (law == "grid") return gridLoad(grid, resampled(readField(load, setting), setting));
+    if (law == "grid") return gridLoad(grid, resampled(readField(load, setting, problem), setting));
     load.refuse("law", "point, uniform, gaussian or grid");
 }
 
@@ -282,14 +283,15 @@ PlateProblem readProblem(const std::filesystem::path& path, std::optional<int> c
     const Setting   setting{path.parent_path(), fileGrid, cells ? refined(fileGrid, *cells, path.string()) : fileGrid};
 
     PlateProblem problem;
+    problem.files              = {path};
     problem.plate.grid         = setting.solveGrid;
     problem.plate.edges        = readEdges(file);
     problem.plate.poissonRatio = file.number("poisson");
-    problem.plate.rigidity     = readMap(file.object("rigidity"), kRigidity, setting, problem.warnings);
+    problem.plate.rigidity     = readMap(file.object("rigidity"), kRigidity, setting, problem);
     if (!isPoissonRatio(problem.plate.poissonRatio)) file.refuse("poisson", "a number above -1 and at most 0.5");
     readFoundation(file, setting, problem);
     if (const auto why = whyUnsolvable(problem.plate)) throw Error(path.string() + ": " + *why);
-    problem.nodalForce = readLoad(file.object("load"), setting);
+    problem.nodalForce = readLoad(file.object("load"), setting, problem);
     problem.probes     = readProbes(file, setting.solveGrid);
     for (std::string& warning : warningsOf(file.object("load"), problem))
         problem.warnings.push_back(std::move(warning));

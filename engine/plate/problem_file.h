@@ -20,6 +20,8 @@ struct PlateProblem {
     NodeField                nodalForce; ///< [N], see load.h
     std::vector<Probe>       probes;
     std::vector<std::string> warnings{}; ///< one sentence for each input that is legal but probably unintended
+
+    std::vector<std::filesystem::path> files{}; ///< that were read: the problem file and its grids
 };
 
 /// Reads a problem file: JSON, in SI units, with comments allowed.

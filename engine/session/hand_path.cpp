@@ -15,6 +15,7 @@
 #include "engine/contact/contact.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/fingerprint.h"
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
 #include "engine/core/shown_text.h"
@@ -126,7 +127,7 @@ std::size_t columnIn(std::string_view header, std::string_view name)
 {
     std::size_t k = 0;
     for (std::string_view word = takeWord(header); !word.empty(); word = takeWord(header), ++k)
-        if (k >= 4 && word == name) return k;
+        if (k >= 4 && columnHead(word).name == name) return k;
     return 0;
 }
 
@@ -177,7 +178,8 @@ glm::dquat turnOf(std::string_view line, const std::array<std::size_t, 4>& colum
     return turn / size;
 }
 
-HandPose waypointOf(const std::array<std::string_view, 4>& words, const std::string& where)
+HandPose waypointOf(const std::array<std::string_view, 4>& words, const std::array<double, 4>& inSi,
+                    const std::string& where)
 {
     std::array<double, 4> numbers{};
     for (std::size_t k = 0; k < 4; ++k) {
@@ -187,9 +189,32 @@ HandPose waypointOf(const std::array<std::string_view, 4>& words, const std::str
         if (!number)
             throw Error(where + ": expected a number in column " + std::to_string(k + 1) + ", found " +
                         inQuotes(words[k]));
-        numbers[k] = *number;
+        numbers[k] = *number * inSi[k];
     }
     return {numbers[0], {numbers[1], numbers[2], numbers[3]}};
+}
+
+/// Returns a header whose units in brackets stand directly behind their names, so that "time [ms]" is one word.
+std::string withUnitsAtNames(std::string_view header)
+{
+    std::string text;
+    bool        within = false; // brackets
+    for (const char c : header) {
+        const bool opens = c == '[' || c == '(';
+        while (opens && !text.empty() && (text.back() == ' ' || text.back() == '\t')) text.pop_back();
+        within = opens || (within && c != ']' && c != ')');
+        if (!within || kBetween.find(c) == std::string_view::npos) text += c;
+    }
+    return text;
+}
+
+/// Returns the SI units in one of time, x, y and z, as a header states them.
+std::array<double, 4> unitsIn(const std::array<std::string_view, 4>& names, const std::string& where)
+{
+    std::array<double, 4> inSi{};
+    for (std::size_t k = 0; k < names.size(); ++k)
+        inSi[k] = siPerUnitOf(columnHead(names[k]), k == 0 ? Dimension::time : Dimension::length, where);
+    return inSi;
 }
 
 bool isHeader(const std::array<std::string_view, 4>& words, const std::string& where)
@@ -331,21 +356,24 @@ HandPath parseHand(std::istream& in, const std::string& name)
     Checked               checked;
     std::size_t           columns = 4;
     FurtherColumns        further;
+    std::array<double, 4> inSi{1, 1, 1, 1}; // SI units in one of a column's
     std::vector<char>     line(kLongestLine);
     for (std::size_t number = 1; in.getline(line.data(), std::streamsize(line.size())); ++number) {
-        const std::string          where = name + ": line " + std::to_string(number);
-        constexpr std::string_view kMark = "\xEF\xBB\xBF"; // of UTF-8, as spreadsheets write it
-        std::string_view           rest(line.data());
-        if (number == 1 && rest.starts_with(kMark)) rest.remove_prefix(kMark.size());
+        const std::string where = name + ": line " + std::to_string(number);
+        std::string_view  rest(line.data());
+        if (number == 1 && rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
         const Words words = wordsOf(rest);
         if (words.count == 0 || words.first[0].starts_with('#')) continue;
         if (checked.waypoints.empty() && isHeader(words.first, where)) {
-            columns = std::max(words.count, columns);
-            further = furtherIn(rest, where);
+            const std::string header = withUnitsAtNames(rest);
+            const Words       names  = wordsOf(header);
+            columns                  = std::max(names.count, columns);
+            further                  = furtherIn(header, where);
+            inSi                     = unitsIn(names.first, where);
             continue;
         }
         demandColumns(words, columns, where);
-        HandPose waypoint = waypointOf(words.first, where);
+        HandPose waypoint = waypointOf(words.first, inSi, where);
         if (further.buttons > 0) waypoint.buttons = buttonsOf(wordAt(rest, further.buttons), where);
         if (further.turns()) waypoint.orientation = turnOf(rest, further.turn, where);
         checked.add(waypoint, where);
@@ -362,6 +390,17 @@ HandPath readHand(const std::filesystem::path& path)
     if (path.extension() == ".npy") return handOf(readNpy(path), path.string());
     InputFile in = openForReading(path);
     return parseHand(in, path.string());
+}
+
+std::string fingerprint(const HandPath& hand)
+{
+    Fingerprint print;
+    for (const HandPose& w : hand.waypoints()) {
+        for (const double value : {w.time, w.position.x, w.position.y, w.position.z}) print.add(value);
+        print.add(std::uint64_t(w.buttons));
+        for (int k = 0; k < 4; ++k) print.add(w.orientation[k]);
+    }
+    return print.text();
 }
 
 glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud)

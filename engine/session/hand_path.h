@@ -77,14 +77,17 @@ private:
 /// number, whose bit i is set if button i is down; and so are orientation_x, _y, _z and _w, a quaternion of the grip.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one waypoint a line, numbers between commas,
-/// semicolons, blanks or tabs; lines that start with '#' are comments; a header line is skipped if its first name
-/// begins with "t", as in "time".
+/// semicolons, blanks or tabs; lines that start with '#' are comments; the first name of a header line begins with "t", as
+/// in "time", and its names may have units of time and length, as in "time [ms]".
 /// \throws Error naming the file and the line: NaN, infinity, time that does not rise, too few columns, a hand faster
 ///         than HandPath::kFastest (millimetres?)
 [[nodiscard]] HandPath readHand(const std::filesystem::path& path);
 
 /// Reads a hand from a stream of text; `name` stands in messages.
 [[nodiscard]] HandPath parseHand(std::istream& in, const std::string& name);
+
+/// Returns 16 hexadecimal digits that tell hands apart, see Fingerprint.
+[[nodiscard]] std::string fingerprint(const HandPath& hand);
 
 /// A place on an object and the side of the hand there.
 struct HandPlace {

@@ -208,6 +208,10 @@ struct LoadedObject {
 /// Returns whether the scene, or its material, says how the force stiffens: it wins over what a file says of its points.
 [[nodiscard]] bool statesStiffening(const Scene& scene);
 
+/// Returns the files of the scene's laws: the volumes of grids.
+/// \throws Error as parseSpatialLaw() does
+[[nodiscard]] std::vector<std::string> filesOfLaws(const Scene& scene);
+
 /// Returns what complaints call the scene's cloud.
 [[nodiscard]] std::string cloudName(const Scene& scene);
 

@@ -1,12 +1,11 @@
 #include <algorithm>
-#include <bit>
-#include <cstdio>
 
 #include "engine/cloud/cloud_format.h"
 #include "engine/cloud/face_orientation.h"
 #include "engine/cloud/mesh_points.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
+#include "engine/core/fingerprint.h"
 #include "engine/core/quantity.h"
 #include "engine/core/spatial_law.h"
 #include "engine/session/scene_keys.h"
@@ -197,22 +196,28 @@ bool haveSameCloud(const Scene& a, const Scene& b)
     });
 }
 
+std::vector<std::string> filesOfLaws(const Scene& scene)
+{
+    std::vector<std::string> files;
+    for (const std::string& law : {scene.stiffness, scene.below.volume, scene.below.foundation}) {
+        if (law.empty()) continue;
+        const std::string file =
+            parseSpatialLaw(law, {-1, -1, -1}, {1, 1, 1}, SpatialLaw::Space::volume, LawFiles::left).file;
+        if (!file.empty()) files.push_back(file);
+    }
+    return files;
+}
+
 std::string fingerprint(const PointCloud& cloud)
 {
-    std::uint64_t hash = 14695981039346656037U;
-    const auto    add  = [&](double value) {
-        std::uint64_t bits = std::bit_cast<std::uint64_t>(value);
-        for (int k = 0; k < 8; ++k, bits >>= 8U) hash = (hash ^ (bits & 0xFFU)) * 1099511628211U;
-    };
+    Fingerprint print;
     for (const glm::dvec3& p : cloud.positions()) {
-        add(p.x);
-        add(p.y);
-        add(p.z);
+        print.add(p.x);
+        print.add(p.y);
+        print.add(p.z);
     }
-    for (const double stiffness : cloud.stiffness()) add(stiffness);
-    char text[17];
-    std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-    return text;
+    for (const double stiffness : cloud.stiffness()) print.add(stiffness);
+    return print.text();
 }
 
 } // namespace palp

@@ -10,6 +10,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 #include "engine/session/gripped_arm.h"
 #include "engine/session/scripted_hand.h"
 
@@ -107,7 +108,7 @@ void refuseUnknown(const std::string& word)
     for (const auto& motion : namesOf(HandMotion{})) add(motion.name, false);
     for (const DeviceRecord* record : deviceRecords()) add(record->name, record->holder == DeviceHolder::pointer);
     const auto meant = nearestName(word, known);
-    throw Error("--hand " + word + ": there is no such hand or file; " +
+    throw Error("--hand " + shownText(word, kMostOfPath) + ": there is no such hand or file; " +
                 (meant ? "did you mean " + std::string(*meant) + "? " : "") + "hands: " + listed +
                 ", or the file of a hand's path");
 }

@@ -63,6 +63,11 @@ TEST(Quantity, EveryUnitIsThatManySiUnits)
                                                 {angle, "deg", 3.14159265358979 / 180},
                                                 {time, "s", 1},
                                                 {time, "ms", 1e-3},
+                                                {speed, "m/s", 1},
+                                                {speed, "mm/s", 1e-3},
+                                                {speed, "cm/s", 1e-2},
+                                                {mass, "kg", 1},
+                                                {mass, "g", 1e-3},
                                                 {perLength, "/mm", 1e3}})
         EXPECT_NEAR(parseQuantity(std::string("3 ") + unit, dimension, "x") / (3 * inSi), 1, 1e-12) << unit;
 }
@@ -88,6 +93,30 @@ TEST(Quantity, AnythingElseIsRefusedWithTheKnownUnits)
         for (const char* part : {"--window", "parsec", "mm", "km"})
             EXPECT_NE(message.find(part), std::string::npos) << message;
     }
+}
+
+TEST(Quantity, AColumnsHeadIsItsNameAndItsUnit)
+{
+    const auto both = [](std::string_view cell) {
+        const ColumnHead head = columnHead(cell);
+        return std::string(head.name) + "|" + std::string(head.unit);
+    };
+    EXPECT_EQ(both("depth [mm]"), "depth|mm");
+    EXPECT_EQ(both(" force( mN ) "), "force|mN");
+    EXPECT_EQ(both("nx [1]"), "nx|");
+    EXPECT_EQ(both("x]"), "x]|") << "no bracket opens";
+    EXPECT_EQ(both("x[mm"), "x|");
+    EXPECT_EQ(siPerUnitOf(columnHead("x[mm]"), Dimension::length, "a.csv"), 1e-3);
+    EXPECT_EQ(siPerUnitOf(columnHead("x"), Dimension::length, "a.csv"), 1);
+    EXPECT_TRUE(holds(refusalOf([] { (void)siPerUnitOf(columnHead("x [s]"), Dimension::length, "a.csv"); }),
+                      {"a.csv: column \"x\": unknown unit \"s\"", "m, mm"}));
+}
+
+TEST(Quantity, WhatIsFarTooLongIsRepeatedInPart)
+{
+    EXPECT_LT(
+        refusalOf([] { (void)parseQuantity("4 " + std::string(5000, 'm'), Dimension::length, "--window"); }).size(),
+        300u);
 }
 
 TEST(Quantity, ARefusalListsTheUnitsOfItsDimensionInTheirOrder)

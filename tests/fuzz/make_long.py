@@ -127,8 +127,8 @@ def hunt(count):
 
 def trials(count):
     head = ("participant,trial,block,task,kind,condition,condition_second,question,answer,correct,reaction_time_s,seed,session,"
-            "session_second,force_mean_N,force_peak_N,version\n")
-    return head + "".join(f'p1,{n + 1},1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/{n + 1}a,,0.5,1.5,0.1.0\n' for n in range(count))
+            "session_second,force_mean_N,force_peak_N,version,felt\n")
+    return head + "".join(f'p1,{n + 1},1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/{n + 1}a,,0.5,1.5,0.1.0,1\n' for n in range(count))
 
 
 def hand(count):

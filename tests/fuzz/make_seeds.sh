@@ -122,9 +122,10 @@ END
 printf '{"nodules": [{"at": [0, 1e-3, 0], "radius": "4 mm", "modulus": "3 MPa", "depth": "2 mm"}], "press_force": "0.2 N", "too_hard": 2, "ground": 0.02}' >hunt/listed
 printf '{"random": {"count": 4, "radius": ["3 mm", "6 mm"], "modulus": [6e5, 3e6], "depth": ["1 mm", "5 mm"]}}' >hunt/random
 
-trials='participant,trial,block,task,kind,condition,condition_second,question,answer,correct,reaction_time_s,seed,session,session_second,force_mean_N,force_peak_N,version\n'
-printf "$trials"'p1,1,1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/1a,,0.5,1.5,0.1.0\np1,2,1,cut' >trials/cut
-printf "$trials" >trials/empty
+trials='participant,trial,block,task,kind,condition,condition_second,question,answer,correct,reaction_time_s,seed,session,session_second,force_mean_N,force_peak_N,version'
+printf "$trials"',felt\np1,1,1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/1a,,0.5,1.5,0.2.0,1\np1,2,1,cut' >trials/cut
+printf "$trials"'\np1,1,1,realism,rating,even,,"How, ""real""?",4,,1.25,7,p1/1a,,0.5,1.5,0.1.0\n' >trials/older
+printf "$trials"',felt\n' >trials/empty
 
 # The first byte says which file of a recording it is. Rows of 64 bytes.
 rows="{'descr': [('time', '<f8'), ('hip', '<f8', (3,)), ('hip_velocity', '<f8', (3,)), ('missed', '<i4'), ('device', '<u4')], 'fortran_order': False, 'shape': (2,), }"

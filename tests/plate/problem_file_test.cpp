@@ -132,6 +132,17 @@ TEST_F(ProblemFile, GridsLieBesideTheFileWhereverTheProgramRuns)
     EXPECT_EQ(read(rigidityOf(R"({"law": "grid", "file": "sub/D.npy"})")).plate.rigidity(0, 0), 3);
 }
 
+TEST_F(ProblemFile, NamesTheFilesThatWereRead)
+{
+    writeNpy(folder_ / "D.npy", NodeField(9, 9, 1.0));
+    const PlateProblem                       problem = read(R"({"size": [1, 1], "cells": [8, 8], "poisson": 0.3,
+        "rigidity": {"law": "grid", "file": "D.npy"}, "foundation": {"law": "grid", "file": "D.npy"},
+        "load": {"law": "grid", "file": "D.npy"}})");
+    const std::vector<std::filesystem::path> expected{folder_ / "plate.json", folder_ / "D.npy", folder_ / "D.npy",
+                                                      folder_ / "D.npy"};
+    EXPECT_EQ(problem.files, expected);
+}
+
 TEST_F(ProblemFile, OtherCellsKeepTheProportionAndResampleGrids)
 {
     NodeField field(9, 13);

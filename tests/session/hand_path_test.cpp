@@ -48,6 +48,35 @@ TEST(HandPath, ReadsNumbersBetweenAnythingUsualWithOrWithoutAHeader)
     }
 }
 
+TEST(HandPath, AHeaderMayStateUnitsOfTimeAndLength)
+{
+    for (const char* header :
+         {"time[ms],x[mm],y[cm],z[m]", "time [ms], x (mm), y [ cm ], z, buttons", "t[ms];x[mm];y[cm];z"}) {
+        const bool     more = std::string(header).find("buttons") != std::string::npos;
+        const HandPath hand =
+            parsed(std::string(header) + (more ? "\n0,1,2,3,0\n500,2,2,3,1\n" : "\n0,1,2,3\n500,2,2,3\n"));
+
+        EXPECT_EQ(hand.duration(), 0.5) << header;
+        EXPECT_NEAR(hand.position(0).x, 1e-3, 1e-15);
+        EXPECT_NEAR(hand.position(0).y, 2e-2, 1e-15);
+        EXPECT_EQ(hand.position(0).z, 3);
+        EXPECT_EQ(hand.buttons(0.5), more ? 1U : 0U);
+    }
+    EXPECT_TRUE(
+        holds(refusal("time[min],x,y,z\n0,0,0,0\n"), {"line 1: column \"time\"", "unknown unit \"min\"", "s, ms"}));
+    EXPECT_TRUE(holds(refusal("time,x[s],y,z\n0,0,0,0\n"), {"column \"x\"", "m, mm, cm"}));
+}
+
+TEST(HandPath, FingerprintsTellHandsApart)
+{
+    const std::string rows = "0,0,0,0\n1,0,0,";
+    EXPECT_EQ(fingerprint(parsed(rows + "0.1")), fingerprint(parsed("t x y z\n" + rows + "1e-1\n")))
+        << "the same numbers";
+    EXPECT_NE(fingerprint(parsed(rows + "0.1")), fingerprint(parsed(rows + "0.2")));
+    EXPECT_NE(fingerprint(parsed("t,x,y,z,buttons\n0,0,0,0,0\n1,0,0,0,0\n")),
+              fingerprint(parsed("t,x,y,z,buttons\n0,0,0,0,0\n1,0,0,0,1\n")));
+}
+
 TEST(HandPath, AtTheTimeOfAWaypointItIsThatWaypointBitForBitAndBeyondTheEndsItRests)
 {
     std::vector<HandPose> waypoints;

@@ -48,18 +48,11 @@ std::string possibleMasses()
 }
 
 /// Reads "200 g" or "0.2" [kg].
-double kilograms(std::string text)
+double kilograms(const std::string& text)
 {
-    const std::string given = text;
-    double            unit  = 1; // [kg]
-    if (text.ends_with("g")) {
-        const bool kilo = text.ends_with("kg");
-        text.resize(text.size() - (kilo ? 2 : 1));
-        unit = kilo ? 1 : 1e-3;
-    }
-    const double mass = parseQuantity(text, Dimension::none, "--mass", unit);
+    const double mass = parseQuantity(text, Dimension::mass, "--mass");
     if (mass >= FalconCalibration::kLeastMass && mass <= FalconCalibration::kMostMass) return mass;
-    throw Error("--mass: expected " + possibleMasses() + ", found \"" + given + "\"" +
+    throw Error("--mass: expected " + possibleMasses() + ", found \"" + text + "\"" +
                 (mass > FalconCalibration::kMostMass ? ": the motors could not hold it beside the arm" : ""));
 }
 
@@ -87,14 +80,14 @@ private:
     double without_ = 0;          ///< [N] that hold the arm alone
 };
 
-void tell(const CalibrateOptions& o, Stage stage)
+void tell(double mass, Stage stage)
 {
     if (stage == Stage::lift)
         std::cerr << "palpate: lift the grip to the middle of its workspace and hold it there loosely; release it when "
                      "the force begins, within 2 s; the motors then find the command that carries the arm\n";
     if (stage == Stage::bare) std::cerr << "palpate: hands off: the arm moves up and down for 16 s and is weighed\n";
     if (stage == Stage::hang)
-        std::cerr << "palpate: hang " << o.mass
+        std::cerr << "palpate: hang " << formatQuantity(1000 * mass, "g")
                   << " on the grip and release it; the weighing continues when the mass hangs still\n";
     if (stage == Stage::done)
         std::cerr << "palpate: hands off: the Falcon now gets no packet for a moment, again and again and longer each "
@@ -131,7 +124,7 @@ struct Found {
 };
 
 /// Goes through all stages with an open Falcon. However it ends, the device is closed, so its last force is zero.
-Found weigh(const CalibrateOptions& o, double mass, Bench& bench)
+Found weigh(double mass, Bench& bench)
 {
     const HapticDeviceInfo& info = bench.device.info();
     Found found{.serial = info.serial, .begun = bench.device.countsInUse(), .isBefore = info.note.empty()};
@@ -151,7 +144,7 @@ Found weigh(const CalibrateOptions& o, double mass, Bench& bench)
     const double              begin   = bench.wait();
     for (double last = begin, gain = 0, ill = 0; calibration.stage() < Stage::done || (hold && !hold->isDone());) {
         if (stop) throw Error("the calibration was interrupted; the force is off");
-        if (calibration.stage() != told) tell(o, told = calibration.stage());
+        if (calibration.stage() != told) tell(mass, told = calibration.stage());
         const double now = bench.wait(), dt = now - last;
         last = now;
         if (bench.act) bench.act(gain, told);
@@ -210,7 +203,7 @@ Found weighReal(const CalibrateOptions& o, double mass)
     Metronome  metronome{std::chrono::milliseconds(1)};
     const auto start = metronome.wait();
     Bench      bench{*falcon, [&] { return std::chrono::duration<double>(metronome.wait() - start).count(); }, {}};
-    return weigh(o, mass, bench);
+    return weigh(mass, bench);
 }
 
 /// [counts/(N m)] the emulated Falcon's true value, which its driver does not know. It and the arm's weight are those
@@ -275,7 +268,7 @@ Found weighEmulated(const CalibrateOptions& o, double mass)
     EmulatedBench emulated(byHand);
     Bench bench{emulated.falcon, [&] { return emulated.now = std::max(emulated.now + 1e-3, emulated.emulator.now()); },
                 [&](double gain, Stage stage) { emulated.act(gain, stage, mass); }};
-    return weigh(o, mass, bench);
+    return weigh(mass, bench);
 }
 
 std::string today()
@@ -305,6 +298,12 @@ std::string store(const Found& found)
     }
 }
 
+/// Returns why the hold is not known, and what follows.
+std::string adviceOnHold(const Found& found)
+{
+    return found.whyNoHold + ". Unplug its power, not its cable, to be sure of no force";
+}
+
 nlohmann::ordered_json jsonOf(const CalibrateOptions& o, double mass, const Found& found, const std::string& file)
 {
     nlohmann::ordered_json report{
@@ -312,11 +311,15 @@ nlohmann::ordered_json jsonOf(const CalibrateOptions& o, double mass, const Foun
         {"counts_per_torque_before", nullptr},
         {"arm_kg", found.arm},
         {"hold_s", nullptr},
+        {"why_no_hold", nullptr},
         {"mass_kg", mass},
         {"file", file.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(file)},
         {"emulated", nullptr}};
     if (found.isBefore) report["counts_per_torque_before"] = found.begun;
-    if (found.hold) report["hold_s"] = *found.hold;
+    if (found.hold)
+        report["hold_s"] = *found.hold;
+    else
+        report["why_no_hold"] = adviceOnHold(found);
     if (o.emulator) report["emulated"] = {{"counts_per_torque", kEmulatedCounts}, {"arm_kg", emulatedFalconArm()}};
     return report;
 }
@@ -353,8 +356,7 @@ void print(const CalibrateOptions& o, const Found& found, const std::string& fil
             "they can end it\n",
             1000 * *found.hold);
     else
-        std::printf("its own hold     %s. Unplug its power, not its cable, to be sure of no force\n",
-                    found.whyNoHold.c_str());
+        std::printf("its own hold     %s\n", adviceOnHold(found).c_str());
     printUse(o, found, file);
 }
 
@@ -391,7 +393,10 @@ void addCalibrateCommand(CLI::App& app)
         "  palpate calibrate --mass '200 g'\n"
         "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"
         "  palpate calibrate --emulator --json");
-    command->callback([o] { calibrate(*o); });
+    command->callback([command, o] {
+        allowOnlyWith(*command, "--emulator", {"--mass", kFalconCounts.flag, "--json"});
+        calibrate(*o);
+    });
 }
 
 } // namespace palp

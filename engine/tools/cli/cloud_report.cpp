@@ -11,6 +11,7 @@
 #include "engine/core/counted.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 #include "engine/core/spatial_law.h"
 #include "engine/session/scene_below.h"
 #include "engine/tools/cli/scene_source.h"
@@ -30,7 +31,18 @@ void refuseSourceAsTarget(const std::string& option, const std::string& source, 
 {
     std::error_code none; // no such file: nothing is lost
     if (!std::filesystem::equivalent(source, target, none) || none) return;
-    throw Error(option + ": " + target + " is the file of the cloud and would be overwritten; name another file");
+    throw Error(option + ": " + shownText(target, kMostOfPath) +
+                " is read as well, and would be overwritten; name another file");
+}
+
+void refuseSameTarget(const std::string& first, const std::string& one, const std::string& second,
+                      const std::string& other)
+{
+    std::error_code none; // a folder that is not there is named when the file is written
+    if (one.empty() || other.empty()) return;
+    if (std::filesystem::weakly_canonical(one, none) != std::filesystem::weakly_canonical(other, none)) return;
+    throw Error(first + " and " + second + ": expected two files, found " + shownText(one, kMostOfPath) +
+                " twice, so that one would be lost; name another file");
 }
 
 std::string placeText(const glm::dvec3& place, double diagonal)

@@ -28,10 +28,16 @@ namespace palp {
 /// Returns what a hunt has hidden in the scene, for commands that do not score it; empty if there is none.
 [[nodiscard]] std::vector<std::string> huntNote(const Scene& scene, const PointCloud& cloud);
 
-/// Refuses to write a cloud over the file that it was read from, which would be lost. Any other file of that name is
-/// replaced, by every command, once the new one is whole.
+/// Refuses to write over a file that is read, which would be lost. Any other file of that name is replaced, by every
+/// command, once the new one is whole.
 /// \param option  names the target
 /// \throws Error if both are the same file
 void refuseSourceAsTarget(const std::string& option, const std::string& source, const std::string& target);
+
+/// Refuses to write two things into one file.
+/// \param first,second  the options that name the files, which may be empty: not written
+/// \throws Error if both are the same file
+void refuseSameTarget(const std::string& first, const std::string& one, const std::string& second,
+                      const std::string& other);
 
 } // namespace palp

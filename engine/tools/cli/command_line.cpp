@@ -15,6 +15,12 @@ void warn(const std::vector<std::string>& sentences)
     for (const std::string& sentence : sentences) std::cerr << "palpate: warning: " << sentence << "\n";
 }
 
+void warn(const std::vector<std::string>& sentences, std::vector<std::string>& said)
+{
+    warn(sentences);
+    said.insert(said.end(), sentences.begin(), sentences.end());
+}
+
 void say(const std::vector<std::string>& sentences)
 {
     for (const std::string& sentence : sentences) std::cerr << "palpate: " << sentence << "\n";
@@ -24,6 +30,24 @@ void demandSvg(const std::string& option, const std::string& file)
 {
     if (!file.empty() && std::filesystem::path(file).extension() != ".svg")
         throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
+}
+
+void demandOwner(const CLI::App& command, const std::string& owner, std::initializer_list<const char*> options)
+{
+    if (command.get_option(owner)->count() > 0) return;
+    for (const std::string option : options)
+        if (command.get_option(option)->count() > 0)
+            throw Error(option + " belongs to " + owner + ", which is not given; add " + owner + " or omit " + option);
+}
+
+void allowOnlyWith(const CLI::App& command, const std::string& option, std::initializer_list<std::string_view> allowed)
+{
+    if (command.get_option(option)->count() == 0) return;
+    for (const CLI::Option* other : command.get_options()) {
+        const std::string name = other->get_name();
+        if (other->count() > 0 && name != option && std::ranges::find(allowed, name) == allowed.end())
+            throw Error(name + " has no effect with " + option + "; omit one of the two");
+    }
 }
 
 double forceOf(const std::string& text)
@@ -47,7 +71,9 @@ std::pair<int, int> pixelsOf(const std::string& text, int least, int most)
 std::string commandOf(const CLI::App& command)
 {
     const auto quoted = [](const std::string& text) {
-        if (text.find_first_of(" '\"\\$*?&;|<>()#~") == std::string::npos) return text;
+        constexpr const char* kPlain = // to every shell
+            "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_./:=,@%+-";
+        if (text.find_first_not_of(kPlain) == std::string::npos) return text;
         std::string result = "'";
         for (const char c : text) {
             if (c == '\'')

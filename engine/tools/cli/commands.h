@@ -1,6 +1,8 @@
 #pragma once
+#include <initializer_list>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -8,6 +10,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/enum_names.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 
@@ -40,6 +43,9 @@ struct CheckFailed : std::runtime_error {
 /// Writes warnings to standard error.
 void warn(const std::vector<std::string>& sentences);
 
+/// Writes warnings to standard error and adds them to those that JSON will have.
+void warn(const std::vector<std::string>& sentences, std::vector<std::string>& said);
+
 /// Writes sentences to standard error that warn of nothing.
 void say(const std::vector<std::string>& sentences);
 
@@ -47,6 +53,16 @@ void say(const std::vector<std::string>& sentences);
 /// \param option  opens the complaint
 /// \throws Error unless the file's name ends in .svg, or is empty: no picture
 void demandSvg(const std::string& option, const std::string& file);
+
+/// Refuses options that have an effect only beside another one, which is not given.
+/// \param owner  the other one, as "--frames"
+/// \throws Error naming both
+void demandOwner(const CLI::App& command, const std::string& owner, std::initializer_list<const char*> options);
+
+/// Refuses what has no effect beside an option, if that is given.
+/// \param allowed  the names of what has one
+/// \throws Error naming both
+void allowOnlyWith(const CLI::App& command, const std::string& option, std::initializer_list<std::string_view> allowed);
 
 /// Reads the force that presses [N].
 /// \throws Error naming --force
@@ -62,7 +78,7 @@ template <NamedEnum Enum>
 [[nodiscard]] Enum named(const std::string& option, const std::string& word)
 {
     if (const auto value = valueNamed<Enum>(word)) return *value;
-    throw Error(option + ": unknown name \"" + word + "\"; known: " + wordsOf<Enum>());
+    throw Error(option + ": unknown name " + inQuotes(word) + "; known: " + wordsOf<Enum>());
 }
 
 /// Returns the command line with a command's options, quoted for a shell.

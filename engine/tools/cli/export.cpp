@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/session/session_table.h"
 #include "engine/tools/cli/commands.h"
@@ -33,7 +34,7 @@ void exportTable(const ExportOptions& o)
             {"finished", session.finished},
             {"incomplete", session.whyIncomplete.empty() ? nlohmann::json() : nlohmann::json(session.whyIncomplete)}});
     else
-        std::cout << ticks << " ticks in " << o.csv << "\n";
+        std::cout << counted(ticks, "tick") << " in " << o.csv << "\n";
     if (!session.whyIncomplete.empty()) warn({o.folder + " is not complete: " + session.whyIncomplete});
 }
 

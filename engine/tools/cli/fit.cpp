@@ -31,6 +31,14 @@ struct FitOptions {
     bool        json   = false;
 };
 
+void refuseSourcesAsTargets(const FitOptions& o, const std::string& cloud)
+{
+    for (const std::string& source : {o.source.name, cloud}) {
+        refuseSourceAsTarget("--out", source, o.out);
+        refuseSourceAsTarget("--page", source, o.page);
+    }
+}
+
 void writePage(const std::string& file, const std::string& html)
 {
     writeFileWhole(file, [&](std::ostream& stream) { stream << html; });
@@ -61,8 +69,8 @@ Json jsonOf(const fit::Probe& probe, const fit::ProbeFit& found)
 
 void printProbes(const FitOptions& o, const fit::ProbesFit& all)
 {
-    std::printf("%s: %zu presses, 95 %% intervals from the covariance of each fit\n\n", o.source.name.c_str(),
-                all.probes.size());
+    std::printf("%s: %s, 95 %% intervals from the covariance of each fit\n\n", o.source.name.c_str(),
+                all.probes.size() == 1 ? "1 press" : (std::to_string(all.probes.size()) + " presses").c_str());
     std::printf("%-10s %-34s %-34s %9s %9s %9s %9s  %s\n", "probe", "K", "b", "residual", "linear", "Hertz", "cubic",
                 "relaxation");
     for (const fit::ProbeFit& p : all.probes)
@@ -109,6 +117,8 @@ void fitProbes(const FitOptions& o)
     if (!o.source.flags.empty())
         throw Error(flagOf(o.source.flags.begin()->first) +
                     ": presses over depth take no keys of scenes; a map of felt stiffness does");
+    refuseSourcesAsTargets(o, o.source.name);
+    const auto                    unused = unusedVariables();
     const std::vector<fit::Probe> probes = fit::readProbes(o.source.name);
     std::vector<fit::ProbeFit>    fits;
     Progress                      progress("fitting " + o.source.name);
@@ -119,13 +129,17 @@ void fitProbes(const FitOptions& o)
     const fit::ProbesFit all = fit::together(std::move(fits));
     if (!o.out.empty()) writeMap(o, probes, all);
     if (!o.page.empty()) writePage(o.page, fit::probesPage(probes, all, o.source.title()));
-    if (!o.json) return printProbes(o, all);
+    if (!o.json) {
+        printProbes(o, all);
+        return warn(unused);
+    }
     Json json{{"name", o.source.name},
               {"interval", 0.95},
               {"interval_from", "covariance"},
               {"stiffening", all.stiffening},
               {"relaxation", relaxationText(all.relaxation)},
-              {"residual", all.medianResidual()}};
+              {"residual", all.medianResidual()},
+              {"warnings", unused}};
     for (std::size_t n = 0; n < probes.size(); ++n) json["probes"].push_back(jsonOf(probes[n], all.probes[n]));
     std::cout << jsonText(json);
 }
@@ -203,7 +217,7 @@ void fitMap(const FitOptions& o)
     const Scene       scene  = o.source.load();
     const LoadedCloud loaded = o.source.loadCloud(scene);
     demandMap(o, scene, loaded.cloud);
-    if (!o.out.empty()) refuseSourceAsTarget("--out", scene.cloud, o.out);
+    refuseSourcesAsTargets(o, scene.cloud);
     PlateSolver solver = openSolver(scene.solver);
     LoadedCloud guess  = loaded; // one modulus everywhere
     const auto  at     = loaded.cloud.positions();
@@ -227,7 +241,8 @@ void fitMap(const FitOptions& o)
         writePage(o.page, fit::mapPage(loaded.cloud, found, o.source.title(), renderer));
         undrawn = renderer.warnings();
     }
-    auto odd = doubts(loaded.cloud, found);
+    auto odd = cloudWarnings(scene, loaded.cloud, loaded.report);
+    for (std::string& doubt : doubts(loaded.cloud, found)) odd.push_back(std::move(doubt));
     odd.insert(odd.end(), undrawn.begin(), undrawn.end());
     if (!o.json) {
         printMap(o, loaded.cloud, found, solver.name());

@@ -6,6 +6,7 @@
 #include "device/homing.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 namespace {
@@ -21,9 +22,7 @@ double metres(const std::string& text, const std::string& option, double metresP
 /// Reads "50 mm/s" or "0.05" [m/s].
 double metresPerSecond(const std::string& text, const std::string& option)
 {
-    std::string length = text;
-    if (length.ends_with("/s")) length.resize(length.size() - 2);
-    const double value = parseQuantity(length, Dimension::length, option);
+    const double value = parseQuantity(text, Dimension::speed, option);
     if (value > 0 && value <= HandPath::kFastest) return value;
     throw Error(option + ": expected a speed above 0 and up to " + formatQuantity(HandPath::kFastest, "m/s") +
                 ", found \"" + text + "\"");
@@ -32,10 +31,8 @@ double metresPerSecond(const std::string& text, const std::string& option)
 /// Reads "150 N/m" or "150" [N/m].
 SimulatedHand gripOf(const std::string& text)
 {
-    std::string number = text;
-    if (number.ends_with("N/m")) number.resize(number.size() - 3);
     SimulatedHand hand;
-    hand.stiffness = parseQuantity(number, Dimension::none, "--arm (N/m)");
+    hand.stiffness = parseQuantity(text, Dimension::stiffness, "--arm");
     if (!(hand.stiffness > 0 && hand.stiffness <= 5000))
         throw Error("--arm: expected the stiffness of a grip, above 0 and up to 5000 N/m (150 is relaxed, 500 firm), "
                     "found \"" +
@@ -44,18 +41,32 @@ SimulatedHand gripOf(const std::string& text)
     return hand;
 }
 
-/// \throws Error naming the option whose text is not understood
+/// Refuses the options of generated hands for another hand, on which they would have no effect.
+void demandGenerated(const HandOptions& o)
+{
+    const DeviceRecord* record = deviceNamed(o.hand);
+    if (record ? record->holder == DeviceHolder::scriptedHand : valueNamed<HandMotion>(o.hand).has_value()) return;
+    for (const auto& [option, text] :
+         {std::pair{"--speed", &o.speed}, std::pair{"--press-depth", &o.depth}, std::pair{"--reach", &o.reach}})
+        if (!text->empty())
+            throw Error(std::string(option) + " belongs to the hands " + generatedHands() + ", found --hand " +
+                        shownText(o.hand, kMostOfPath) + "; omit one of the two");
+}
+
+/// \throws Error naming the option whose text is not understood, or that has no effect
 HandChoice choiceOf(const HandOptions& o)
 {
     HandChoice choice;
     choice.hand    = o.hand;
-    choice.speed   = metresPerSecond(o.speed, "--speed");
-    choice.radius  = reachOf(o.reach, o.metresPerPlainNumber);
     choice.options = o.device;
     choice.cancel  = o.cancel;
+    if (!o.speed.empty()) choice.speed = metresPerSecond(o.speed, "--speed");
+    if (!o.reach.empty()) choice.radius = reachOf(o.reach, o.metresPerPlainNumber);
     if (!o.depth.empty()) choice.depth = metres(o.depth, "--press-depth", o.metresPerPlainNumber);
     if (!o.grip.empty()) choice.grip = gripOf(o.grip);
     if (!o.seconds.empty()) choice.seconds = secondsOf(o.seconds);
+    demandGood(choice);
+    demandGenerated(o);
     return choice;
 }
 
@@ -87,10 +98,8 @@ double reachOf(const std::string& text, double metresPerPlainNumber)
 
 double secondsOf(const std::string& text)
 {
-    constexpr double kMost  = 86400; // [s] a day
-    std::string      number = text;
-    if (number.ends_with("s")) number.resize(number.size() - 1);
-    const double seconds = parseQuantity(number, Dimension::none, "--seconds");
+    constexpr double kMost   = 86400; // [s] a day
+    const double     seconds = parseQuantity(text, Dimension::time, "--seconds");
     if (seconds > 0 && seconds <= kMost) return seconds;
     throw Error("--seconds: expected a time above 0 and up to 86400 s, found \"" + text + "\"");
 }
@@ -112,11 +121,10 @@ std::string deviceHands()
 
 void addHandOptions(CLI::App& command, HandOptions& options, std::span<const DeviceRecord* const> records)
 {
-    command.add_option("--speed", options.speed, "largest speed of press, circle and scan")->capture_default_str();
+    command.add_option("--speed", options.speed, "largest speed of press, circle and scan [50 mm/s]");
     command.add_option("--press-depth", options.depth,
                        "depth of the hand below the surface [40 % of the thickness, within plate theory]");
-    command.add_option("--reach", options.reach, "radius of the circle, half the length of the scan")
-        ->capture_default_str();
+    command.add_option("--reach", options.reach, "radius of the circle, half the length of the scan [10 mm]");
     command.add_option(
         "--arm", options.grip,
         "stiffness with which the hand grips a simulated device, so that forces move it (relaxed '150 N/m', "
@@ -133,8 +141,7 @@ void addDeviceOptions(CLI::App& command, DeviceOptionValues& values, std::span<c
 
 void demandGood(const HandOptions& options)
 {
-    const HandChoice choice = choiceOf(options);
-    demandGood(choice);
+    static_cast<void>(choiceOf(options));
     if (!deviceNamed(options.hand) && !valueNamed<HandMotion>(options.hand)) static_cast<void>(readHand(options.hand));
 }
 

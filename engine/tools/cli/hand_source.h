@@ -10,9 +10,9 @@ namespace palp {
 
 /// The options of the hand, as the command line gives them.
 struct HandOptions {
-    std::string        hand  = "scan"; ///< as HandChoice::hand
-    std::string        speed = "50 mm/s", depth{}, reach = "10 mm";
-    double             metresPerPlainNumber = 1; ///< of depth and reach, see metresPerPlainNumber()
+    std::string        hand = "scan";             ///< as HandChoice::hand
+    std::string        speed{}, depth{}, reach{}; ///< of a generated hand; empty: as HandChoice has them
+    double             metresPerPlainNumber = 1;  ///< of depth and reach, see metresPerPlainNumber()
     std::string        grip{};    ///< of a scripted hand on a simulated device; empty: forces do not move the hand
     DeviceOptionValues device{};  ///< options of the device
     std::string        seconds{}; ///< "5 s"; empty: 5 s, or a file's own length

@@ -112,6 +112,7 @@ void addHuntCommand(CLI::App& app)
     command->callback([command, o] {
         o->session.command = commandOf(*command);
         o->session.json    = o->json;
+        allowOnlyWith(*command, "--score", {"--out", "--json"});
         hunt(*o);
     });
 }

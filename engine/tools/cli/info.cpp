@@ -187,7 +187,8 @@ void addInfoCommand(CLI::App& app)
                     "  palpate info scan.ply --length-unit mm\n"
                     "  palpate info painted.ply --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                     "  palpate info --samples");
-    command->callback([options, list, keys, schema] {
+    command->callback([command, options, list, keys, schema] {
+        for (const char* alone : {"--samples", "--keys", "--schema"}) allowOnlyWith(*command, alone, {"--json"});
         if (*list) return printSamples(options->json);
         if (*keys) return printKeys(options->json);
         if (*schema) return void(std::cout << sceneSchema(&study::huntKeys()));

@@ -262,7 +262,8 @@ int runProgram(int argumentCount, char** arguments)
         return complain(onUnknownWords(app), kBadInput);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return printHelp(app, error); // or --version
-        return complain(std::string(error.what()) + "; see --help", kBadInput);
+        constexpr std::size_t kMost = 400;                            // [bytes] it repeats what was typed
+        return complain(palp::shownText(error.what(), kMost) + "; see --help", kBadInput);
     } catch (const palp::CheckFailed&) {
         return printed() ? kCheckFailed : complain(kUnprinted, kBadInput);
     } catch (const palp::compute::ProcessorError& error) {

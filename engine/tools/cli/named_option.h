@@ -1,6 +1,7 @@
 #pragma once
 #include "engine/core/contract.h"
 #include "engine/core/enum_names.h"
+#include "engine/core/shown_text.h"
 
 namespace palp {
 
@@ -10,7 +11,7 @@ template <NamedEnum Enum>
 [[nodiscard]] Enum optionNamed(const std::string& option, const std::string& word)
 {
     if (const auto value = valueNamed<Enum>(word)) return *value;
-    throw Error(option + ": expected " + wordsOf<Enum>() + ", found \"" + word + "\"");
+    throw Error(option + ": expected " + wordsOf<Enum>() + ", found " + inQuotes(word));
 }
 
 } // namespace palp

@@ -40,12 +40,14 @@ struct Felt {
         : scene(o.scene.load()), loaded(o.scene.loadObject(scene)), object(loaded.object),
           solver(openSolver(scene.solver))
     {
-        warn(cloudWarnings(scene, object.cloud(), loaded.report));
+        warn(cloudWarnings(scene, object.cloud(), loaded.report), said);
     }
     Scene             scene;
     LoadedObject      loaded;
     const SoftObject& object;
     PlateSolver       solver;
+
+    std::vector<std::string> said{}; ///< warnings
 };
 
 /// Returns the length of the path to either side of the middle [m].
@@ -95,6 +97,7 @@ nlohmann::ordered_json jsonOf(const PerceiveOptions& o, const Felt& felt, const 
     all["most_floor"]   = kMostFloor;
     all["floor_is_low"] = p.floorIsLow();
     all["held"]         = p.held();
+    all["warnings"]     = felt.said;
     if (!map) return all;
     all["map"] = {{"places", map->places.size()}, {"left_out", map->leftOut}, {"typical_stiffness", map->typical}};
     for (const double weber : kWeberFractions) {
@@ -135,10 +138,24 @@ void print(const PerceiveOptions& o, const Felt& felt, const ScenePerception& p,
         std::printf("map: %zu places, typically %s\n", map->places.size(), formatQuantity(map->typical, "N/m").c_str());
 }
 
+/// Returns what keeps the numbers from being those of the object, in sentences.
+std::vector<std::string> doubts(const ScenePerception& p)
+{
+    if (p.held() > 0)
+        return {"in " + fixed(100 * p.held(), 1) +
+                " % of the slide a wall or a fold of the surface holds the hand up; J leaves that out, and counts what "
+                "is felt as the hand comes free; try another --along or a shorter --reach"};
+    if (p.floorIsLow()) return {};
+    return {"on the same points with one stiffness J is " + formatNumber(p.sliding.front().floor) +
+            " for a finger that notices 7 %, and should be below 0.5: part of the felt stiffness is an artefact; try a "
+            "wider --window, more --cells or a shorter --reach"};
+}
+
 void perceive(const PerceiveOptions& o)
 {
     demandSvg("--out", o.out);
     demandSvg("--picture", o.picture);
+    refuseSameTarget("--out", o.out, "--picture", o.picture);
     Felt                   felt(o);
     const FeltLine         line = feltLine(felt.scene, felt.object,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),
@@ -155,21 +172,12 @@ void perceive(const PerceiveOptions& o)
     if (map)
         write(o.picture, mapSvg(felt.object.cloud(), *map, kTypicalWeber, line.middle.outward,
                                 "What is noticed if 15 % is the smallest change: " + o.scene.title(), renderer));
-    warn(renderer.warnings());
+    warn(renderer.warnings(), felt.said);
+    warn(doubts(found), felt.said);
     if (o.json)
         std::cout << jsonText(jsonOf(o, felt, found, map));
     else
         print(o, felt, found, map);
-    if (found.held() > 0)
-        std::cerr << "palpate: warning: in " << fixed(100 * found.held(), 1)
-                  << " % of the slide a wall or a fold of the surface holds the hand up; J leaves that out, and counts "
-                     "what is felt as the hand comes free; try another --along or a shorter --reach\n";
-    else if (!found.floorIsLow())
-        std::cerr << "palpate: warning: on the same points with one stiffness J is "
-                  << formatNumber(found.sliding.front().floor)
-                  << " for a finger that notices 7 %, and should be below 0.5: part of the felt stiffness is an "
-                     "artefact; try "
-                     "a wider --window, more --cells or a shorter --reach\n";
 }
 
 } // namespace
@@ -196,7 +204,10 @@ void addPerceiveCommand(CLI::App& app)
                     "  palpate perceive samples/scenes/skin_wart.json --picture wart.svg\n"
                     "J is the number of just noticeable steps between two stiffnesses, for people whose\n"
                     "smallest noticed change is 7, 15 or 22 %. The floor is J on the same points with one stiffness.");
-    command->callback([o] { perceive(*o); });
+    command->callback([command, o] {
+        demandOwner(*command, "--picture", {"--picture-places"});
+        perceive(*o);
+    });
 }
 
 } // namespace palp

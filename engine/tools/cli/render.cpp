@@ -141,7 +141,8 @@ Written write(Stage& stage, const Camera& camera, const std::filesystem::path& f
 }
 
 /// Draws a touch at the scene's place.
-Written still(const RenderOptions& o, Stage& stage)
+/// \param said  gets what there is to say of the touch
+Written still(const RenderOptions& o, Stage& stage, std::vector<std::string>& said)
 {
     const Patch  patch = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const double force = o.force.empty() ? forceThatShows(patch, stage.scene.material.thickness) : forceOf(o.force);
@@ -152,7 +153,7 @@ Written still(const RenderOptions& o, Stage& stage)
     Written written          = write(stage, cameraFor(o, stage, patch), o.out);
     written.force            = force;
     written.deepest          = deepestOf(patch, load);
-    warn(warnings(patch, stage.scene.patch, force, stage.scene.material));
+    warn(warnings(patch, stage.scene.patch, force, stage.scene.material), said);
     return written;
 }
 
@@ -163,13 +164,14 @@ struct Filmed {
 };
 
 /// Returns the session at evenly spread times, from the first to the last tick.
-Filmed recordsOf(const RenderOptions& o, Stage& stage, int frames)
+Filmed recordsOf(const RenderOptions& o, Stage& stage, int frames, std::vector<std::string>& said)
 {
     HandOptions hand          = o.hand;
     hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, stage.scene);
     SessionHand source        = handFor(hand, stage.scene, stage.loaded.object);
     if (source.isHeldByPerson())
         throw Error("--hand " + hand.hand + ": a person holds it; --frames needs a scripted hand");
+    warn(source.warnings, said);
     Deformation             deformation(stage.loaded.object, stage.scene);
     const SessionParts      parts{stage.scene,    stage.loaded.object, deformation.solver(),
                              *source.device, source.frame,        deformation.firstLaw()};
@@ -191,11 +193,11 @@ std::filesystem::path frameFile(const std::filesystem::path& out, int number)
 }
 
 /// Draws the session of a scripted hand in virtual time, with one camera and one scale of colours for all pictures.
-std::vector<Written> film(const RenderOptions& o, Stage& stage)
+std::vector<Written> film(const RenderOptions& o, Stage& stage, std::vector<std::string>& said)
 {
     const Patch        middle  = patchAt(stage, contactOf(stage.scene, stage.loaded.object));
     const Camera       camera  = cameraFor(o, stage, middle);
-    const Filmed       film    = recordsOf(o, stage, *o.frames);
+    const Filmed       film    = recordsOf(o, stage, *o.frames, said);
     const auto&        records = film.records;
     std::vector<Patch> patches;
     const auto         loadOf = [&](const TickRecord& s, const Patch* patch) {
@@ -228,7 +230,8 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage)
     return written;
 }
 
-void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>& written)
+void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>& written,
+          const std::vector<std::string>& said)
 {
     if (o.json) {
         nlohmann::ordered_json all;
@@ -237,6 +240,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
         all["size"]      = {stage.size.width, stage.size.height};
         all["drawn_on"]  = stage.renderer.processor().name;
         all["solved_on"] = stage.solver.name();
+        all["warnings"]  = said;
         for (const Written& w : written)
             all["pictures"].push_back({{"file", w.file},
                                        {"force", w.force},
@@ -259,9 +263,11 @@ void render(const RenderOptions& o)
         throw Error("--frames: expected 1 to 9999, found " + std::to_string(*o.frames));
     if (o.frames && !o.force.empty())
         throw Error("--force: with --frames the hand decides how hard it presses; omit one of the two");
-    Stage stage(o);
-    warn(cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report));
-    tell(o, stage, o.frames ? film(o, stage) : std::vector{still(o, stage)});
+    Stage                    stage(o);
+    std::vector<std::string> said;
+    warn(cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report), said);
+    const auto written = o.frames ? film(o, stage, said) : std::vector{still(o, stage, said)};
+    tell(o, stage, written, said);
 }
 
 } // namespace
@@ -308,7 +314,10 @@ void addRenderCommand(CLI::App& app)
                     "  palpate render samples/scenes/skin_wart.json --force '1 N' --colour stiffness --out wart.png\n"
                     "  palpate render scan.ply --length-unit mm --place 12,0,30 --size 800x600 --dark --out scan.png\n"
                     "  palpate render samples/scenes/palm.json --frames 50 --out film.png");
-    command->callback([o] { render(*o); });
+    command->callback([command, o] {
+        demandOwner(*command, "--frames", {"--hand", "--seconds", "--speed", "--press-depth", "--reach", "--arm"});
+        render(*o);
+    });
 }
 
 } // namespace palp

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/replay_device.h"
 #include "engine/tools/cli/cloud_report.h"
@@ -84,7 +85,7 @@ void replay(const ReplayOptions& o)
         std::cout << jsonText(
             nlohmann::json{{"equal", !difference}, {"samples", again.records.size()}, {"says", sentence}});
     else
-        std::cout << again.records.size() << " ticks: " << sentence << "\n";
+        std::cout << counted(again.records.size(), "tick") << ": " << sentence << "\n";
     if (difference) throw CheckFailed(sentence);
 }
 

@@ -112,7 +112,7 @@ Scene sceneFrom(const std::string& name, const std::map<std::string, std::string
     else
         static_cast<void>(openRegularFile(name));
     if (flags.contains("cloud"))
-        throw Error("--cloud: the cloud is already named, " + shownText(name, 200) + "; omit one of the two");
+        throw Error("--cloud: the cloud is already named, " + shownText(name, kMostOfPath) + "; omit one of the two");
     overrides.flags.try_emplace("cloud", name); // not as JSON: a file's name may hold bytes that JSON cannot
     return parseScene("{}", name, ".", overrides);
 }
@@ -155,16 +155,20 @@ std::string SceneSource::title() const
 
 std::vector<std::string> unusedVariables()
 {
-    constexpr std::string_view    kPrefix  = "PALPATE_";
-    constexpr std::string_view    kHostIsa = "PALPATE_HOST_ISA"; // which hostVariant() reads
-    constexpr std::string_view    kHaply   = "PALPATE_HAPLY";    // which the driver of the Haply reads
+    constexpr std::string_view kPrefix  = "PALPATE_";
+    constexpr std::string_view kReads[] = {
+        "PALPATE_HOST_ISA", // hostVariant()
+        "PALPATE_HAPLY",    // the driver of the Haply
+        "PALPATE_LIBRARY",  // Python's package
+        "PALPATE_BUILD",    // the scripts of a checkout
+    };
     std::vector<std::string_view> known;
     for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) known.push_back(key->name);
     std::vector<std::string> said;
     for (char** entry = environ; *entry; ++entry) {
         const std::string_view text(*entry), name = text.substr(0, text.find('='));
-        if (!name.starts_with(kPrefix) || name == kHostIsa || name == kHaply || text.size() <= name.size() + 1)
-            continue;
+        if (!name.starts_with(kPrefix) || text.size() <= name.size() + 1) continue;
+        if (std::ranges::find(kReads, name) != std::end(kReads)) continue;
         std::string key;
         for (const char c : name.substr(kPrefix.size())) key += c >= 'A' && c <= 'Z' ? char(c - 'A' + 'a') : c;
         if (std::ranges::find(known, key) != known.end() && variableOf(key) == name) continue;

@@ -211,7 +211,7 @@ void printText(const SessionRun& run)
     printText(run.summary, run.solver, run.hand);
     if (!run.takeover.empty()) std::cout << "  " << run.takeover << "\n";
     if (run.recorded) {
-        std::cout << "  " << run.recorded->ticks << " ticks in " << run.folder;
+        std::cout << "  " << counted(run.recorded->ticks, "tick") << " in " << run.folder;
         if (run.recorded->markers > 0) std::cout << ", " << counted(run.recorded->markers, "marker");
         std::cout << "\n";
         if (run.recorded->markersLost > 0)
@@ -220,7 +220,8 @@ void printText(const SessionRun& run)
                                                 : " lost: they came too fast or were too many\n");
     }
     for (const StreamReport& stream : run.streams)
-        std::cout << "  " << stream.sent << " ticks sent to " << stream.to << ", " << stream.dropped << " dropped\n";
+        std::cout << "  " << counted(stream.sent, "tick") << " sent to " << stream.to << ", " << stream.dropped
+                  << " dropped\n";
 }
 
 void demandWhole(const SessionRun& run)

@@ -15,6 +15,7 @@
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
 #include "engine/plate/problem_file.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/solver_choice.h"
 
@@ -57,6 +58,7 @@ PlateSolution solvedWithProgress(PlateSolver& solver, const PlateProblem& proble
 Solved solved(const SolveOptions& options)
 {
     Solved s{readProblem(options.problem, options.cells), {}, {}};
+    for (const std::filesystem::path& file : s.problem.files) refuseSourceAsTarget("--out", file.string(), options.out);
 
     PlateSolver solver = options.solver.open();
     const auto  told   = solver.counts().takeovers;
@@ -64,9 +66,10 @@ Solved solved(const SolveOptions& options)
     s.note             = solver.note();
     sayTakeover(solver.takeoverSince(told, s.solution.report.solver));
     if (const SolveReport& report = s.solution.report; !report.converged)
-        s.problem.warnings.push_back("the solution misses --tolerance: its error is about " +
-                                     formatNumber(*report.errorEstimate) +
-                                     " or more, relative; try fewer cells, less contrast or --solver reference");
+        s.problem.warnings.push_back(
+            "the solution misses --tolerance: its error is about " + formatNumber(*report.errorEstimate) +
+            " or more, relative; try fewer cells" +
+            (report.solver == PlateSolver::kReference ? " or less contrast" : ", less contrast or --solver reference"));
     warn(s.problem.warnings);
     // With one plate and one load, the time of the answer includes the preparation.
     s.solution.report.milliseconds += s.solution.report.setUpMilliseconds;
@@ -184,20 +187,10 @@ void printText(const Solved& s, const std::string& name)
         std::printf("  %12.6g %12.6g %16.8e\n", s.problem.probes[k].x, s.problem.probes[k].z, s.probeDeflections[k]);
 }
 
-/// Refuses an answer that would replace its own problem.
-void checkTarget(const SolveOptions& options)
-{
-    if (options.out.empty()) return;
-    if (std::filesystem::path(options.out).extension() != ".npy")
-        throw Error("--out: expected a name that ends with .npy, found \"" + options.out + "\"");
-    std::error_code missing; // where one of them does not exist, they are not the same
-    if (std::filesystem::equivalent(options.out, options.problem, missing))
-        throw Error("--out: \"" + options.out + "\" is the problem file itself; name another one");
-}
-
 void solveAndPrint(const SolveOptions& options)
 {
-    checkTarget(options);
+    if (!options.out.empty() && std::filesystem::path(options.out).extension() != ".npy")
+        throw Error("--out: expected a name that ends with .npy, found \"" + options.out + "\"");
     const Solved s = solved(options);
     if (!options.out.empty()) writeNpy(options.out, s.solution.deflection);
     if (options.json)

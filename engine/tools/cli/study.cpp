@@ -21,12 +21,7 @@ struct StudyOptions {
 void study_(const StudyOptions& o, bool handGiven)
 {
     demandSvg("--plot", o.plot);
-    const bool runs = !o.run.plan.empty() || !o.run.participant.empty() || !o.out.empty() || o.order;
-    if (!o.analyse.empty() && runs)
-        throw Error("--analyse reads answers, whereas PLAN, --participant, --out and --order belong to a run; omit "
-                    "one or the other");
     if (!o.analyse.empty()) return analyseStudies(o.analyse, o.plot, o.run.json);
-    if (!o.plot.empty()) throw Error("--plot belongs to --analyse, which is not given; add --analyse or omit --plot");
     if (o.run.plan.empty()) throw Error("PLAN: expected the file of a study's plan, found none; see samples/studies");
     if (o.run.participant.empty())
         throw Error("--participant: expected a name that ends in a number, such as P01, found none");
@@ -78,6 +73,8 @@ void addStudyCommand(CLI::App& app)
                     "  palpate study --analyse study --plot shares.svg");
     command->callback([command, hand, o] {
         o->run.session.command = commandOf(*command);
+        allowOnlyWith(*command, "--analyse", {"--plot", "--json"});
+        demandOwner(*command, "--analyse", {"--plot"});
         study_(*o, hand->count() > 0);
     });
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <iostream>
-#include <set>
+#include <map>
 
 #include <nlohmann/json.hpp>
 
@@ -12,6 +12,7 @@
 #include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 #include "engine/perception/perception.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/study/study_analysis.h"
@@ -30,6 +31,7 @@ struct Answers {
     std::vector<study::TrialRow> rows;
     study::Stiffnesses           stiffnesses;
     std::size_t                  participants = 0;
+    std::size_t                  leftOut      = 0; ///< trials with a touch in which nothing was felt
 };
 
 std::vector<std::filesystem::path> participantsIn(const std::filesystem::path& folder)
@@ -49,21 +51,34 @@ std::vector<std::filesystem::path> participantsIn(const std::filesystem::path& f
 
 Answers answersIn(const std::vector<std::string>& folders)
 {
-    Answers                         all;
-    std::set<std::filesystem::path> seen;
-    std::string                     plan;
+    Answers                                      all;
+    std::map<std::string, std::filesystem::path> seen; // folders by their participants' names
+    std::string                                  plan;
     for (const std::string& folder : folders)
         for (const auto& participant : participantsIn(folder)) {
-            if (!seen.insert(std::filesystem::weakly_canonical(participant)).second)
-                throw Error(participant.string() + ": expected each participant once, found this one twice");
             const study::StudyFile file = study::readStudyFile(participant);
             if (!plan.empty() && file.plan != plan)
                 throw Error(participant.string() + ": expected participants of one study, found another plan than that "
                                                    "of the first; analyse each plan's participants by themselves");
-            plan            = file.plan;
-            const auto rows = study::readTrials(participant / "trials.csv");
-            all.rows.insert(all.rows.end(), rows.begin(), rows.end());
-            all.participants += !rows.empty();
+            const auto [before, isNew] = seen.try_emplace(file.participant, participant);
+            if (!isNew)
+                throw Error(participant.string() + ": expected each participant once, found " +
+                            inQuotes(file.participant) + " again, who is also in " + before->second.string() +
+                            "; analyse the folders one by one");
+            plan                     = file.plan;
+            const std::size_t others = all.rows.size();
+            for (study::TrialRow& row : study::readTrials(participant / "trials.csv")) {
+                if (row.participant != file.participant)
+                    throw Error((participant / "trials.csv").string() + ": trial " + std::to_string(row.trial) +
+                                ": expected the participant of " + study::kStudyFile + ", " +
+                                inQuotes(file.participant) + ", found " + inQuotes(row.participant) +
+                                "; was the table changed by another program?");
+                if (row.wasFelt())
+                    all.rows.push_back(std::move(row));
+                else
+                    ++all.leftOut;
+            }
+            all.participants += all.rows.size() > others;
             for (const auto& [condition, stiffness] : file.feltStiffness)
                 if (stiffness) all.stiffnesses[condition] = *stiffness;
         }
@@ -165,19 +180,29 @@ void printOrder(const study::StudyPlan& plan, const std::string& participant, bo
 
 void analyseStudies(const std::vector<std::string>& folders, const std::filesystem::path& plot, bool json)
 {
-    const Answers all = answersIn(folders);
-    if (all.rows.empty()) throw Error(folders.front() + ": expected answered trials, found none yet");
+    const Answers     all     = answersIn(folders);
+    const std::string leftOut = all.leftOut == 0 ? ""
+                                                 : counted(all.leftOut, "trial") +
+                                                       " left out, because nothing was felt in a touch and so the "
+                                                       "answer is not valid";
+    if (all.rows.empty())
+        throw Error(folders.front() + ": expected answered trials, found none yet" +
+                    (leftOut.empty() ? "" : "; " + leftOut));
     const auto summaries = study::analyse(all.rows, all.stiffnesses);
     if (!plot.empty()) writeFileWhole(plot, [&](std::ostream& file) { file << study::analysisSvg(summaries); });
     if (json) {
         Json list = Json::array();
         for (const AnswerSummary& s : summaries) list.push_back(jsonOf(s));
-        std::cout << jsonText(Json{{"participants", all.participants}, {"trials", all.rows.size()}, {"answers", list}});
+        std::cout << jsonText(Json{{"participants", all.participants},
+                                   {"trials", all.rows.size()},
+                                   {"left_out", all.leftOut},
+                                   {"answers", list}});
         return;
     }
     std::cout << counted(all.rows.size(), "trial") << " of " << counted(all.participants, "participant")
               << "; intervals of 95 %: shares by Wilson's score, which assumes independent trials, means "
                  "by a bootstrap over participants\n";
+    if (!leftOut.empty()) std::cout << leftOut << "\n";
     for (const AnswerSummary& s : summaries) printText(s);
 }
 

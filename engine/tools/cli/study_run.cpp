@@ -17,6 +17,8 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
+#include "engine/core/shown_text.h"
+#include "engine/session/hand_path.h"
 #include "engine/session/interrupt.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/commit.h"
@@ -100,6 +102,11 @@ struct ForceTally {
         sum += force, ++ticks;
         peak = std::max(peak, force);
     }
+    void add(const ForceTally& other)
+    {
+        sum += other.sum, ticks += other.ticks;
+        peak = std::max(peak, other.peak);
+    }
     [[nodiscard]] double mean() const { return ticks > 0 ? sum / double(ticks) : 0; }
 };
 
@@ -163,9 +170,16 @@ private:
 };
 
 /// Returns the hand without the port of its device, which may change from day to day.
-std::string wordOf(const std::string& hand)
+std::string withoutPort(const std::string& hand)
 {
     return hand.substr(0, hand.find('@'));
+}
+
+/// Returns the fingerprint of a hand's file; nothing if the hand is none.
+std::optional<std::string> pathOf(const std::string& hand)
+{
+    if (deviceNamed(hand) || valueNamed<HandMotion>(hand)) return std::nullopt;
+    return fingerprint(readHand(hand));
 }
 
 /// Returns the folders of a study's participants; none where the study is new.
@@ -192,6 +206,7 @@ void Sitting::agree()
                                     .title       = plan_.title,
                                     .plan        = plan_.canonical,
                                     .hand        = run_.session.hand.hand,
+                                    .path        = pathOf(run_.session.hand.hand),
                                     .clock       = run_.session.clock,
                                     .version     = PALPATE_VERSION " " PALPATE_COMMIT};
     for (const Felt& felt : felt_) now.clouds.push_back(fingerprint(felt.loaded.object.cloud()));
@@ -201,13 +216,21 @@ void Sitting::agree()
             throw Error(path.string() + ": expected the plan that this participant began with, found that " +
                         run_.plan + " or a scene of it has changed since; choose another --out");
         const auto demandSame = [&](const char* option, const std::optional<std::string>& was,
-                                    const std::optional<std::string>& is) {
+                                    const std::optional<std::string>& is, const auto& wordOf) {
             if (was && wordOf(*was) != wordOf(*is))
                 throw Error(path.string() + ": expected the " + option + " that this participant began with, \"" +
                             *was + "\", found \"" + *is + "\"; trials could not be compared; choose another --out");
         };
-        demandSame("--hand", before.hand, now.hand);
-        demandSame("--clock", before.clock, now.clock);
+        if (!before.path && now.path) // of an earlier version; the same file may have another name from another folder
+            demandSame("--hand", before.hand, now.hand,
+                       [](const std::filesystem::path& hand) { return hand.filename(); });
+        else if (!now.path)
+            demandSame("--hand", before.hand, now.hand, withoutPort);
+        else if (*before.path != *now.path)
+            throw Error(path.string() + ": expected the path of a hand that this participant began with, found that " +
+                        shownText(*now.hand, kMostOfPath) +
+                        " has another one, or has changed since; trials could not be compared; choose another --out");
+        demandSame("--clock", before.clock, now.clock, std::identity());
         return;
     }
     for (const auto& other : othersIn(run_.out))
@@ -241,10 +264,11 @@ void Sitting::demandOurs() const
 void Sitting::tellUnfelt() const
 {
     for (const TrialRow& row : table_->rows())
-        if (row.peakForce <= 0)
-            std::cerr << "palpate: trial " << row.trial
-                      << ": nothing was felt: the hand never touched or had no force; "
-                      << "its answer is not valid\n";
+        if (!row.wasFelt())
+            std::cerr << "palpate: trial " << row.trial << ": nothing was felt"
+                      << (row.second.empty() ? "" : " in one of its touches")
+                      << ": the hand never touched or had no force; its answer is not valid, and --analyse leaves it "
+                         "out\n";
 }
 
 /// Adds to a file what the participant must not read: it says what is touched. It is on the disk before the question is asked.
@@ -353,12 +377,12 @@ TrialRow Sitting::trial(std::size_t number)
     char              stem[32];
     std::snprintf(stem, sizeof stem, "trial_%03zu", number + 1);
     TrialRow   row;
-    ForceTally force;
+    ForceTally force, second;
     begin("\n" + which + (trial.second ? ", the first of two." : "."));
     row.firstSession = touch(trial.first, stem, force);
     if (trial.second) {
         begin(which + ", the second.");
-        row.secondSession = touch(*trial.second, std::string(stem) + "_second", force);
+        row.secondSession = touch(*trial.second, std::string(stem) + "_second", second);
         row.second        = plan_.conditions[*trial.second].name;
     }
     const auto asked = std::chrono::steady_clock::now();
@@ -372,7 +396,9 @@ TrialRow Sitting::trial(std::size_t number)
     row.first        = plan_.conditions[trial.first].name;
     row.question     = task.question;
     if (trial.right) row.correct = row.answer == *trial.right;
-    row.seed      = plan_.seed;
+    row.seed = plan_.seed;
+    row.felt = force.peak > 0 && (!trial.second || second.peak > 0);
+    force.add(second);
     row.meanForce = force.mean();
     row.peakForce = force.peak;
     row.version   = PALPATE_VERSION " " PALPATE_COMMIT;

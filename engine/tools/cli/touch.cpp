@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 
@@ -36,7 +38,33 @@ struct TouchOptions {
     bool        json  = false;
 };
 
-constexpr const char* kSummary = "touch.json";
+constexpr const char* kSummary    = "touch.json";
+constexpr const char* kDeformed   = "deformed.ply";
+constexpr const char* kGrids[]    = {"deflection.npy", "rigidity.npy"};
+constexpr const char* kPictures[] = {"surface.svg", "close_up.svg", "rigidity.svg", "deflection.svg", "profile.svg"};
+
+/// Returns the names of all files in the folder of --out, in reading order.
+std::vector<std::string> fileNames()
+{
+    std::vector<std::string> names{kDeformed};
+    names.insert(names.end(), std::begin(kGrids), std::end(kGrids));
+    names.insert(names.end(), std::begin(kPictures), std::end(kPictures));
+    names.emplace_back(kSummary);
+    return names;
+}
+
+/// Refuses a folder in which a file would be written over one that the touch reads.
+void demandTarget(const TouchOptions& options, const Scene& scene)
+{
+    if (options.out.empty()) return;
+    if (options.out == "-")
+        throw Error("--out: expected a folder, found \"-\"; --json without --out writes to standard output");
+    std::vector<std::string> sources = filesOfLaws(scene);
+    sources.insert(sources.end(), {options.source.name, scene.cloud});
+    for (const std::string& name : fileNames())
+        for (const std::string& source : sources)
+            refuseSourceAsTarget("--out", source, (std::filesystem::path(options.out) / name).string());
+}
 
 std::string percent(double share)
 {
@@ -158,10 +186,8 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
             std::printf("  wrote              %s\n", (options.out + "/" + file.get<std::string>()).c_str());
 }
 
-/// Writes the touch's pictures and returns the names of their files, in reading order.
-std::vector<std::string> writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
-                                       const PatchSettings& settings, double force, double load,
-                                       FigureRenderer& renderer)
+void writePictures(const std::filesystem::path& folder, const PointCloud& cloud, const Patch& patch,
+                   const PatchSettings& settings, double force, double load, FigureRenderer& renderer)
 {
     const std::string  newtons   = formatQuantity(force, "N");
     const double       deepest   = load * mostResponse(patch);
@@ -171,25 +197,19 @@ std::vector<std::string> writePictures(const std::filesystem::path& folder, cons
     const auto         times     = [](double factor) {
         return factor == 1 ? std::string() : ", displacement x " + std::to_string(int(factor));
     };
-    const std::pair<const char*, std::string> pictures[] = {
-        {"surface.svg", surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false}, renderer)},
-        {"close_up.svg",
-         surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true}, renderer)},
-        {"rigidity.svg",
-         rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart")},
-        {"deflection.svg", deflectionChartSvg(patch, settings, load, "Deflection under " + newtons)},
-        {"profile.svg", profileSvg(patch, load, "Deflection through the contact under " + newtons)}};
-    std::vector<std::string> files;
-    for (const auto& picture : pictures) {
-        writeFileWhole(folder / picture.first, [&](std::ostream& stream) { stream << picture.second; });
-        files.emplace_back(picture.first);
-    }
-    return files;
+    const std::array<std::string, std::size(kPictures)> drawn = {
+        surfaceSvg(cloud, pressed, {"Under " + newtons + times(far), far, {}, false}, renderer),
+        surfaceSvg(cloud, pressed, {"Around the contact under " + newtons + times(near), near, {}, true}, renderer),
+        rigidityChartSvg(patch, settings, std::string("Rigidity in the ") + name(patch.chart.map) + " chart"),
+        deflectionChartSvg(patch, settings, load, "Deflection under " + newtons),
+        profileSvg(patch, load, "Deflection through the contact under " + newtons)};
+    for (std::size_t k = 0; k < drawn.size(); ++k)
+        writeFileWhole(folder / kPictures[k], [&](std::ostream& stream) { stream << drawn[k]; });
 }
 
 /// Writes the deformed cloud, the grids and the pictures.
-std::vector<std::string> writeFiles(const TouchOptions& options, const PointCloud& cloud, const Patch& patch,
-                                    const PatchSettings& settings, double force, double load, FigureRenderer& renderer)
+void writeFiles(const TouchOptions& options, const PointCloud& cloud, const Patch& patch, const PatchSettings& settings,
+                double force, double load, FigureRenderer& renderer)
 {
     const std::filesystem::path folder = options.out;
     makeFolder(folder);
@@ -201,17 +221,13 @@ std::vector<std::string> writeFiles(const TouchOptions& options, const PointClou
     const std::span<const double> stiffness  = cloud.stiffness();
     const PointCloud bent(displaced(cloud, patch, load), {stiffness.begin(), stiffness.end()}, cloud.kind());
     const NamedField field{"deflection", "m", deflection};
-    writeCloud(folder / "deformed.ply", bent, {&field, 1});
+    writeCloud(folder / kDeformed, bent, {&field, 1});
 
     NodeField w = patch.response;
     for (double& value : w.values()) value *= load;
-    writeNpy(folder / "deflection.npy", w);
-    writeNpy(folder / "rigidity.npy", patch.plate.rigidity);
-
-    std::vector<std::string> files = {"deformed.ply", "deflection.npy", "rigidity.npy"};
-    for (std::string& picture : writePictures(folder, cloud, patch, settings, force, load, renderer))
-        files.push_back(std::move(picture));
-    return files;
+    writeNpy(folder / kGrids[0], w);
+    writeNpy(folder / kGrids[1], patch.plate.rigidity);
+    writePictures(folder, cloud, patch, settings, force, load, renderer);
 }
 
 /// Stiffnesses and thicknesses may be anything positive; their quotients must still be numbers.
@@ -250,14 +266,15 @@ void touch(const TouchOptions& options)
     Scene                scene    = options.source.load();
     const PatchSettings& settings = scene.patch;
     const double         force    = forceOf(options.force);
-    const LoadedObject   loaded   = options.source.loadObject(scene);
-    const SoftObject&    object   = loaded.object;
-    const std::string    why      = whyDentWindow(object, scene.patch);
-    scene.patch                   = settledFor(object, scene.patch);
-    const Contact contact         = contactOf(scene, object);
-    PlateSolver   solver          = openSolver(scene.solver);
-    const auto    told            = solver.counts().takeovers;
-    const Patch   patch           = deform(object, contact, settings, solver);
+    demandTarget(options, scene);
+    const LoadedObject loaded = options.source.loadObject(scene);
+    const SoftObject&  object = loaded.object;
+    const std::string  why    = whyDentWindow(object, scene.patch);
+    scene.patch               = settledFor(object, scene.patch);
+    const Contact contact     = contactOf(scene, object);
+    PlateSolver   solver      = openSolver(scene.solver);
+    const auto    told        = solver.counts().takeovers;
+    const Patch   patch       = deform(object, contact, settings, solver);
     tellTakeover(solver.takeoverSince(told, patch.report.solver), patch, settings.tolerance);
     demandDeformed(patch);
 
@@ -271,12 +288,11 @@ void touch(const TouchOptions& options)
     if (std::string doubt = placeDoubt(scene, patch); !doubt.empty()) report["warnings"].push_back(std::move(doubt));
     report["preset"] = name(scene.preset);
     if (!options.out.empty()) {
-        FigureRenderer           renderer;
-        const double             load  = pressOf(patch, scene.material, force).load;
-        std::vector<std::string> files = writeFiles(options, object.cloud(), patch, settings, force, load, renderer);
-        files.emplace_back(kSummary);
+        FigureRenderer renderer;
+        const double   load = pressOf(patch, scene.material, force).load;
+        writeFiles(options, object.cloud(), patch, settings, force, load, renderer);
         for (const std::string& warning : renderer.warnings()) report["warnings"].push_back(warning);
-        report["files"] = files;
+        report["files"] = fileNames();
         writeFileWhole(std::filesystem::path(options.out) / kSummary,
                        [&](std::ostream& file) { file << jsonText(report); });
     }

@@ -66,9 +66,10 @@ bool isSaid(std::string_view line)
     return !trimmed(line).empty() && !trimmed(line).starts_with('#');
 }
 
-std::string_view bareName(std::string_view cell)
+std::string_view withoutMark(std::string_view text)
 {
-    return trimmed(cell.substr(0, cell.find_first_of("[(")));
+    if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+    return text;
 }
 
 /// The columns of a file.
@@ -78,10 +79,10 @@ public:
     {
         const auto cells = cellsOf(line);
         for (std::size_t k = 0; k < cells.size(); ++k) {
-            const std::string_view bare = bareName(cells[k]);
-            if (bare == "probe") probe_ = k;
+            const ColumnHead head = columnHead(cells[k]);
+            if (head.name == "probe") probe_ = k;
             for (std::size_t c = 0; c < kColumns; ++c)
-                if (bare == kNames[c].name) take(c, k, cells[k], where);
+                if (head.name == kNames[c].name) take(c, k, head, where);
         }
         for (const Column needed : {kDepth, kForce})
             if (!at_[needed])
@@ -105,19 +106,13 @@ public:
     }
 
 private:
-    void take(std::size_t column, std::size_t cell, std::string_view text, const std::string& where)
+    void take(std::size_t column, std::size_t cell, const ColumnHead& head, const std::string& where)
     {
         if (at_[column])
             throw Error(where + ": expected one column \"" + std::string(kNames[column].name) + "\", found two");
-        at_[column]             = cell;
-        width_                  = std::max(width_, cell + 1);
-        const std::size_t open  = text.find_first_of("[(");
-        const std::size_t close = text.find_first_of("])");
-        if (open == std::string_view::npos || close == std::string_view::npos || close < open) return;
-        const std::string unit(trimmed(text.substr(open + 1, close - open - 1)));
-        if (unit.empty() || unit == "1") return;
-        inSi_[column] = parseQuantity("1 " + unit, kNames[column].dimension,
-                                      where + ": column \"" + std::string(kNames[column].name) + "\"");
+        at_[column]   = cell;
+        width_        = std::max(width_, cell + 1);
+        inSi_[column] = siPerUnitOf(head, kNames[column].dimension, where);
     }
 
     std::array<std::optional<std::size_t>, kColumns> at_;
@@ -125,6 +120,12 @@ private:
     std::optional<std::size_t>                       probe_;
     std::size_t                                      width_ = 0; // cells that a row must have
 };
+
+std::string placeText(const glm::dvec3& place)
+{
+    return "(" + formatQuantity(place.x, "m") + ", " + formatQuantity(place.y, "m") + ", " +
+           formatQuantity(place.z, "m") + ")";
+}
 
 /// A probe and the line of each of its rows.
 struct Draft {
@@ -216,11 +217,12 @@ bool holdsProbes(const std::filesystem::path& file)
     std::string line;
     for (int n = 0; n < 100 && std::getline(stream, line); ++n) {
         if (line.size() > 4096) return false; // no line of a header
-        if (!isSaid(line)) continue;
+        const std::string_view said = n == 0 ? withoutMark(line) : std::string_view(line);
+        if (!isSaid(said)) continue;
         bool depth = false, force = false;
-        for (const std::string_view cell : cellsOf(line)) {
-            depth |= bareName(cell) == "depth";
-            force |= bareName(cell) == "force";
+        for (const std::string_view cell : cellsOf(said)) {
+            depth |= columnHead(cell).name == "depth";
+            force |= columnHead(cell).name == "force";
         }
         return depth && force;
     }
@@ -239,6 +241,7 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
     std::optional<Header>              header;
     std::vector<Draft>                 drafts;
     std::map<std::string, std::size_t> known;
+    text = withoutMark(text);
     while (!text.empty()) {
         const std::string_view line = nextLine(text);
         ++number;
@@ -253,6 +256,12 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
                         std::to_string(cells.size()));
         const std::string called =
             header->probe() && *header->probe() < cells.size() ? std::string(cells[*header->probe()]) : "1";
+        const auto point = [&](Column x, Column y, Column z) -> std::optional<glm::dvec3> {
+            if (!header->has(x) || !header->has(y) || !header->has(z)) return {};
+            return glm::dvec3(header->read(x, cells, where()), header->read(y, cells, where()),
+                              header->read(z, cells, where()));
+        };
+        const auto place       = point(kX, kY, kZ);
         const auto [at, fresh] = known.try_emplace(called, drafts.size());
         if (fresh) {
             if (drafts.size() == kMostProbes)
@@ -260,16 +269,15 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
                             " probes, found more; the column \"probe\" names "
                             "them: it is the same in all rows of one touch");
             drafts.emplace_back();
-            drafts.back().probe.name = shownText(called);
-            const auto point         = [&](Column x, Column y, Column z) -> std::optional<glm::dvec3> {
-                if (!header->has(x) || !header->has(y) || !header->has(z)) return {};
-                return glm::dvec3(header->read(x, cells, where()), header->read(y, cells, where()),
-                                          header->read(z, cells, where()));
-            };
-            drafts.back().probe.place  = point(kX, kY, kZ);
+            drafts.back().probe.name   = shownText(called);
+            drafts.back().probe.place  = place;
             drafts.back().probe.normal = point(kNx, kNy, kNz);
         }
         Draft& draft = drafts[at->second];
+        if (place != draft.probe.place)
+            throw Error(where() + ": expected one place in all rows of a probe, that where it begins to touch, found " +
+                        placeText(*place) + " after " + placeText(*draft.probe.place) + " of probe " +
+                        draft.probe.name + (header->probe() ? "" : "; name them by a column \"probe\""));
         draft.lines.push_back(number);
         draft.probe.depth.push_back(header->read(kDepth, cells, where()));
         draft.probe.force.push_back(header->read(kForce, cells, where()));

@@ -44,6 +44,7 @@ StudyFile parseStudyFile(std::string_view text, const std::string& what)
             .plan          = file.text("plan"),
             .clouds        = file.texts("clouds"),
             .hand          = textIn(file, "hand"),
+            .path          = textIn(file, "hand_path"),
             .clock         = textIn(file, "clock"),
             .feltStiffness = feltIn(file),
             .version       = textIn(file, "version").value_or("")};
@@ -54,6 +55,7 @@ std::string studyJson(const StudyFile& file)
     Json json{{"format", 1},           {"participant", file.participant}, {"title", file.title},    {"plan", file.plan},
               {"clouds", file.clouds}, {kFelt, Json::object()},           {"version", file.version}};
     if (file.hand) json["hand"] = *file.hand;
+    if (file.path) json["hand_path"] = *file.path;
     if (file.clock) json["clock"] = *file.clock;
     for (const auto& [condition, stiffness] : file.feltStiffness)
         json[kFelt][condition] = stiffness ? Json(*stiffness) : Json();

@@ -17,7 +17,8 @@ struct StudyFile {
     std::string                plan{};   ///< StudyPlan::canonical
     std::vector<std::string>   clouds{}; ///< fingerprint() of each condition's
     std::optional<std::string> hand{};   ///< as --hand; files of earlier versions have none
-    std::optional<std::string> clock{};  ///< as --clock, likewise
+    std::optional<std::string> path{};   ///< fingerprint() of the hand's file; none of other hands and in earlier files
+    std::optional<std::string> clock{};  ///< as --clock; files of earlier versions have none
     /// [N/m] felt at the place of each condition's scene, as a device renders it; empty: nothing can be felt there
     std::map<std::string, std::optional<double>> feltStiffness{};
     std::string                                  version{}; ///< of the program that wrote it

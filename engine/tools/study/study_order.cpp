@@ -5,6 +5,7 @@
 
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
+#include "engine/core/shown_text.h"
 #include "engine/core/uniform.h"
 
 namespace palp::study {
@@ -97,8 +98,11 @@ std::uint64_t participantNumber(std::string_view name)
     const auto isLetter = [](char c) {
         return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_';
     };
-    const bool good = !name.empty() && name.size() <= 64 &&
-                      std::ranges::all_of(name, [&](char c) { return isDigit(c) || isLetter(c); });
+    constexpr std::size_t kLongest = 64; // [bytes] it names a folder
+    if (name.size() > kLongest)
+        throw Error("--participant: expected a name of at most " + std::to_string(kLongest) + " characters, found " +
+                    std::to_string(name.size()) + ": " + inQuotes(name));
+    const bool  good  = !name.empty() && std::ranges::all_of(name, [&](char c) { return isDigit(c) || isLetter(c); });
     std::size_t begin = name.size();
     while (begin > 0 && isDigit(name[begin - 1])) --begin;
     constexpr std::uint64_t kMost  = 1'000'000; // participants; orders repeat long before
@@ -106,7 +110,7 @@ std::uint64_t participantNumber(std::string_view name)
     if (!good || name.starts_with('-') || !number || *number < 1 || *number > kMost)
         throw Error("--participant: expected letters, digits, - and _ that end in a number from 1 on, such as P01 "
                     "(orders are balanced over the numbers), found \"" +
-                    std::string(name.substr(0, 64)) + "\"");
+                    shownText(name) + "\"");
     return *number;
 }
 

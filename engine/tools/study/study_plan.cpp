@@ -11,6 +11,8 @@
 #include "engine/core/nearest_name.h"
 #include "engine/force/governor.h"
 #include "engine/pipeline/presets.h"
+#include "engine/session/device_registry.h"
+#include "engine/session/hand_path.h"
 #include "engine/tools/study/hunt_scene.h"
 
 namespace palp::study {
@@ -130,6 +132,11 @@ void readPairs(Task& task, const JsonObject& object, const std::vector<Condition
         task.pairs.push_back({pair[0], pair[1]});
     }
     if (!object.has("right")) return;
+    for (const auto& [first, second] : task.pairs)
+        if (std::ranges::find(task.pairs, std::array{second, first}) != task.pairs.end())
+            throw Error(where + ": expected each pair in one order where \"right\" is given, found \"" +
+                        conditions[first].name + "\" and \"" + conditions[second].name +
+                        "\" in both, so that the right answers contradict each other; list the pair once");
     const std::string right = object.text("right");
     if (right != "first" && right != "second") object.refuse("right", "first or second, of each pair as it is listed");
     task.right = right == "second";
@@ -169,6 +176,13 @@ void demandNew(const std::vector<Named>& before, const Named& one, const std::st
             throw Error(where + ": expected a name of its own, found \"" + one.name + "\" again");
 }
 
+/// Returns the hand as --hand takes it: a file is looked for from the plan's folder.
+std::string handIn(const std::filesystem::path& folder, const std::string& hand)
+{
+    const bool isFile = !deviceNamed(hand) && !valueNamed<HandMotion>(hand);
+    return isFile ? (folder / hand).string() : hand;
+}
+
 std::string canonicalText(const JsonObject& file, const StudyPlan& plan)
 {
     Json all;
@@ -191,7 +205,7 @@ StudyPlan parsePlan(std::string_view text, const std::string& name, const std::f
     if (file.has("seconds")) plan.seconds = file.positiveNumber("seconds");
     if (!(plan.seconds >= kLeastSeconds && plan.seconds <= kMostSeconds))
         file.refuse("seconds", "a time from 1.5 s, which a force needs to come on, to 3600 s");
-    if (file.has("hand")) plan.hand = textOf(file, "hand");
+    if (file.has("hand")) plan.hand = handIn(folder, textOf(file, "hand"));
     if (file.has("repetitions")) plan.repetitions = file.wholeNumber("repetitions", 1, kMostRepetitions);
     for (const JsonObject& one : objectsIn(file, "conditions", "condition", kMostConditions)) {
         Condition condition = conditionOf(one, folder);

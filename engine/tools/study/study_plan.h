@@ -50,14 +50,14 @@ struct StudyPlan {
     std::string            title;
     std::uint64_t          seed        = 1;      ///< of orders
     double                 seconds     = 8;      ///< of one touch [s]
-    std::string            hand        = "scan"; ///< as --hand, which overrides it
+    std::string            hand        = "scan"; ///< as --hand, which overrides it; a file's path has the plan's folder
     int                    repetitions = 1;      ///< of each condition or pair in a task
     std::vector<Condition> conditions;
     std::vector<Task>      tasks;
     std::string            canonical; ///< all that defines the study, as one text, to compare plans
 };
 
-/// Reads a plan: JSON, comments allowed. Scenes are paths from the plan's folder. A condition's "preset" and "values"
+/// Reads a plan: JSON, comments allowed. Scenes, and the file of a hand, are paths from the plan's folder. A condition's "preset" and "values"
 /// override its scene as flags do, and "values" override "preset". Environment variables have no effect, so that the
 /// plan defines the study.
 /// \throws Error naming the file, the condition or task, the key, what was expected and found

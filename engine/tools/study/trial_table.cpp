@@ -58,14 +58,16 @@ constexpr Column numberColumn(const char* name)
             }};
 }
 
-std::string correctText(const TrialRow& row)
+template <std::optional<bool> TrialRow::*member>
+constexpr Column flagColumn(const char* name)
 {
-    return !row.correct ? "" : *row.correct ? "1" : "0";
-}
-bool readCorrect(TrialRow& row, const std::string& text)
-{
-    if (text == "0" || text == "1") row.correct = text == "1";
-    return text.empty() || row.correct;
+    return {name, [](const TrialRow& r) { return std::string(!(r.*member)   ? ""
+                                                             : *(r.*member) ? "1"
+                                                                            : "0"); },
+            [](TrialRow& r, const std::string& text) {
+                if (text == "0" || text == "1") r.*member = text == "1";
+                return text.empty() || r.*member;
+            }};
 }
 
 /// The only list of columns: the header, the rows and the reader follow it.
@@ -79,7 +81,7 @@ constexpr Column kColumns[] = {
     textColumn<&TrialRow::second>("condition_second"),
     textColumn<&TrialRow::question>("question"),
     textColumn<&TrialRow::answer>("answer"),
-    {"correct", correctText, readCorrect},
+    flagColumn<&TrialRow::correct>("correct"),
     numberColumn<&TrialRow::reactionTime>("reaction_time_s"),
     countColumn<&TrialRow::seed>("seed"),
     textColumn<&TrialRow::firstSession>("session"),
@@ -87,6 +89,7 @@ constexpr Column kColumns[] = {
     numberColumn<&TrialRow::meanForce>("force_mean_N"),
     numberColumn<&TrialRow::peakForce>("force_peak_N"),
     textColumn<&TrialRow::version>("version"),
+    flagColumn<&TrialRow::felt>("felt"),
 };
 
 std::string quoted(const std::string& text)
@@ -172,6 +175,21 @@ std::string wholeLines(const std::filesystem::path& file)
     return text;
 }
 
+/// Returns a table of this version: with an empty last column where an earlier one had none.
+std::string asToday(std::string text)
+{
+    const std::string today = header(), before = today.substr(0, today.rfind(',')) + "\n";
+    if (!text.starts_with(before)) return text;
+    std::string wider = today;
+    wider.reserve(text.size() + std::size_t(std::ranges::count(text, '\n')) + today.size());
+    for (std::size_t begin = before.size(); begin < text.size();) {
+        const std::size_t end = text.find('\n', begin);
+        wider.append(text, begin, end - begin).append(",\n");
+        begin = end + 1;
+    }
+    return wider;
+}
+
 std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::path& file)
 {
     const std::string head = header();
@@ -217,13 +235,13 @@ void appendNow(const std::filesystem::path& file, const std::string& bytes)
 
 std::vector<TrialRow> readTrials(const std::filesystem::path& file)
 {
-    return rowsOf(wholeLines(file), file);
+    return rowsOf(asToday(wholeLines(file)), file);
 }
 
 TrialTable::TrialTable(std::filesystem::path file) : file_(std::move(file))
 {
     const bool  there = isThere(file_); // an empty table is never written over one that a server hides for a moment
-    std::string text  = there ? wholeLines(file_) : "";
+    std::string text  = there ? asToday(wholeLines(file_)) : "";
     if (text.empty()) text = header();
     rows_ = rowsOf(text, file_);
     if (!there || sizeOfFile(file_) != text.size()) writeFileWhole(file_, [&](std::ostream& out) { out << text; });

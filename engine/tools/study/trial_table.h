@@ -20,10 +20,14 @@ struct TrialRow {
     std::string         firstSession, secondSession;  ///< folders, relative to the study's
     double              meanForce = 0, peakForce = 0; ///< over the time in contact [N]
     std::string         version;                      ///< of the program, with its commit
+    std::optional<bool> felt; ///< in each touch a force came on; empty in tables of earlier versions
+
+    /// Returns whether each touch had a force, as far as the table tells: an answer without one is not valid.
+    [[nodiscard]] bool wasFelt() const noexcept { return felt.value_or(peakForce > 0); }
 };
 
 /// Reads the rows of a table that was written by TrialTable. A last line without an end was cut by a crash and counts
-/// as not written.
+/// as not written. Tables of earlier versions lack the column "felt".
 /// \throws Error naming the file, the line, what was expected and found
 [[nodiscard]] std::vector<TrialRow> readTrials(const std::filesystem::path& file);
 
@@ -31,7 +35,8 @@ struct TrialRow {
 /// append() returns, so that a crash loses at most the current trial.
 class TrialTable {
 public:
-    /// Creates the table, or opens an existing one; a line that was cut is removed.
+    /// Creates the table, or opens an existing one; a line that was cut is removed, and to one of an earlier version the
+    /// column that it lacks is added, empty.
     /// \throws Error naming the file and the reason
     explicit TrialTable(std::filesystem::path file);
 

@@ -51,6 +51,8 @@ good 'another seed' hunt "$scene" --hand "$hand" --clock virtual --hunt-seed 8 -
 grep -A3 centre_m out.txt | cmp -s - seven.txt && complain 'another seed hides at the same places' || pass
 bad 'nothing is hidden' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --clock virtual
 bad 'a seed of nothing' 'nothing is hidden' hunt "$samples/scenes/skin_wart.json" --hunt-seed 3
+bad 'a solver of a score' '--solver has no effect with --score' hunt --score session --solver host
+bad 'a seed of a score' '--hunt-seed has no effect with --score' hunt --score session --hunt-seed 3 --json
 bad 'both a scene and a recording' '--score' hunt "$scene" --score session
 bad 'no recording' 'session.json' hunt --score nowhere
 cp "$scene" scene.json
@@ -138,7 +140,7 @@ cut -d, -f1-3 study/P02/trials.csv >columns.txt
 printf 'participant,trial,block\nP02,1,1\nP02,2,1\nP02,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated after a kill: $(cat study/P02/trials.csv)"
 : >input
 good 'analysed' study --analyse study --plot shares.svg --json
-for word in '"participants": 2' '"trials": 6' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
+for word in '"participants": 2' '"trials": 6' '"left_out": 0' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
 good 'in words' study --analyse study
 holds 'predicted, not measured'
 grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'
@@ -146,7 +148,10 @@ sed 's/4e5/5e5/' plan.json >changed.json
 bad 'the plan has changed' 'has changed since' study changed.json --participant P01 --out study --clock virtual
 bad 'a new participant with another plan' 'choose another --out' study changed.json --participant P06 --out study --clock virtual
 [ ! -e study/P06 ] && pass || complain 'a refused participant has a folder'
-cp -r study answers && sed -i '3s/,2,1,/,7,1,/' answers/P01/trials.csv
+cp -r study answers && sed -i 's/^P02,/P07,/' answers/P02/trials.csv
+bad 'two participants of one name' '"P01" again, who is also in study/P01' study --analyse study answers/P01
+bad 'a table of another participant' 'expected the participant of study.json, "P02", found "P07"' study --analyse answers
+sed -i '3s/,2,1,/,7,1,/' answers/P01/trials.csv
 bad 'a table without a trial' 'P01/trials.csv: line 3: column trial: expected 2, found 7' study --analyse answers
 sed -i 's/4 mm/5 mm/' sheet.json
 bad 'a scene of it has changed' 'has changed since' study plan.json --participant P01 --out study --clock virtual
@@ -172,6 +177,33 @@ printf '\n3\nq\n' >input
 good 'a hand in the air' study plan.json --participant P05 --out air --clock virtual --hand air.csv
 grep -q 'trial 1: nothing was felt' err.txt && pass || complain "nobody says that nothing was felt: $(cat err.txt)"
 : >input
+bad 'nothing that was felt' '1 trial left out, because nothing was felt' study --analyse air
+bad 'a clock of an analysis' '--clock has no effect with --analyse' study --analyse study --clock virtual
+bad 'a long name' 'at most 64 characters, found 101' study plan.json --participant "$(printf '%100s' | tr ' ' P)1" --out study
+mkdir plans # one touch of a pair is in the air, and so is one of the ratings
+good 'a sheet' convert sample:sheet plans/here.csv --points 4000
+awk -F, -v OFS=, '$3 + 0 == $3 { $3 -= 0.05 } { print }' plans/here.csv >plans/below.csv
+for at in here below; do sed "s/sample:sheet\", \"points\": 4000/$at.csv\"/" sheet.json >plans/$at.json; done
+printf '0,0,0,0.01\n1,0,0,-0.001\n2,0,0,-0.001\n' >plans/down.csv
+cat >plans/pair.json <<'JSON'
+{"title": "t", "seconds": 2, "hand": "down.csv", "conditions": [{"name": "HERE", "scene": "here.json"}, {"name": "BELOW", "scene": "below.json"}],
+ "tasks": [{"name": "p", "kind": "two-alternative", "question": "Which?", "pairs": [["HERE", "BELOW"]]}, {"name": "r", "kind": "rating", "statement": "It felt real."}]}
+JSON
+printf '\n\n1\n\n4\n\n4\n' >input
+good 'a pair of which one is not felt' study plans/pair.json --participant P01 --out pairs --clock virtual
+grep -q 'trial 1: nothing was felt in one of its touches' err.txt && pass || complain "nobody says that one was not felt: $(cat err.txt)"
+: >input
+[ "$(sed -n 's/.*,//; 2p' pairs/P01/trials.csv)" = 0 ] && pass || complain "the table: $(cat pairs/P01/trials.csv)"
+good 'what was not felt is left out' study --analyse pairs --json
+for word in '"trials": 1' '"left_out": 2'; do holds "$word"; done
+good 'which is said' study --analyse pairs
+holds '2 trials left out'
+(cd plans && "$palpate" study pair.json --participant P01 --out ../pairs --clock virtual >../out.txt 2>../err.txt) && pass || complain "from another folder: $(cat err.txt)"
+holds '3 of 3 trials'
+cp -r pairs older && sed -i '/"hand_path"/d' older/P01/study.json
+sed -i 's/-0.001/-0.002/' plans/down.csv
+bad 'the path of its hand has changed' 'has changed since' study plans/pair.json --participant P01 --out pairs --clock virtual
+good 'which a study of an earlier version does not know' study plans/pair.json --participant P01 --out older --clock virtual
 bad 'a run and an analysis' '--analyse' study plan.json --analyse study
 bad 'a folder and an analysis' '--analyse' study --analyse study --out other
 bad 'too short to feel' 'a force needs to come on' study short.json --participant P01 --out study

@@ -79,6 +79,8 @@ good 'the map of presses' info felt.csv
 holds '300 N/m' && holds 'felt stiffness [N/m]'
 good 'a map' fit felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --page map.html --out fitted.ply
 holds 'left over'
+PALPATE_THICKNES=1 "$palpate" fit felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --json >out.txt 2>err.txt
+holds 'PALPATE_THICKNES is not used' && holds 'assumed metres'
 good 'what is left' info fitted.ply
 holds 'residual'
 bad 'a map is no object' 'palpate fit makes an object of it' touch felt.csv
@@ -87,6 +89,17 @@ bad 'a tip larger than the map' 'is the unit right' fit felt.csv --footprint-rad
 bad 'an object is no map' 'found a stiffness in Pa' fit fitted.ply --footprint-radius 8mm
 bad 'presses have no tip' 'take no keys of scenes' fit probes.csv --footprint-radius 8mm
 bad 'a page of another kind' 'ends in .html' fit probes.csv --page probes.svg
+cp probes.csv kept.csv
+bad 'a map over its presses' '--out: ./probes.csv is read as well, and would be overwritten' fit probes.csv --out ./probes.csv
+ln probes.csv linked.html
+bad 'a page over its presses' '--page: linked.html is read as well' fit probes.csv --page linked.html
+cmp -s probes.csv kept.csv && rm linked.html && passed=$((passed + 1)) || complain 'fit wrote over its presses'
+sed 1q probes.csv >one.csv && sed -n 2,11p probes.csv >>one.csv
+PALPATE_THICKNES=1 "$palpate" fit one.csv >out.txt 2>err.txt && grep -q '^palpate: warning: .*PALPATE_THICKNES is not used' err.txt && passed=$((passed + 1)) ||
+    complain "fit does not name a variable that nothing reads: $(cat err.txt)"
+holds ': 1 press, 95'
+sed 's/^probe/press/' probes.csv >unnamed.csv
+bad 'places of presses without names' 'name them by a column "probe"' fit unnamed.csv
 sed 's/,\([0-9.]*\),\([0-9.]*,[0-9.]*,0\)$/,-\1,\2/' probes.csv >pulls.csv
 bad 'presses that pull' 'turn the sign' fit pulls.csv
 sed 's/ \[mm\]//' probes.csv >metres.csv
@@ -329,7 +342,16 @@ printf '0,0,0,0\n0.1,nan,0,0\n' >hand.csv
 bad 'a hand that is not a number' hand.csv run scene.json --hand hand.csv
 printf 't;x;y;z\n0;0;0;0,01\n1;0;0;0,002\n' >decimal.csv
 bad 'decimal commas' 'expected 4 columns, found 5' run scene.json --hand decimal.csv
-bad 'a grip in a wrong unit' '"N/mm"' run scene.json --arm '150 N/mm'
+bad 'a grip in a wrong unit' '"150 N/mm"' run scene.json --arm '150 N/mm'
+bad 'a speed in a unit of length' 'unknown unit "mm" in "5 mm"; known units: m/s' run scene.json --speed '5 mm'
+bad 'a time in another unit' 'unknown unit "min" in "2min"; known units: s, ms' run scene.json --seconds 2min
+good 'a time in milliseconds' run scene.json --clock virtual --seconds 100ms --json
+holds '"ticks": 100'
+bad 'a speed of a file' "--speed belongs to the hands press, circle, scan, found --hand session.csv" run scene.json --hand session.csv --speed 10mm/s
+bad 'a depth of a device' '--press-depth belongs to' run scene.json --hand falcon --press-depth 1mm
+printf 'time [ms], x [mm], y [mm], z [mm]\n0, 0, 0, 10\n100, 0, 0, 9\n' >units.csv
+good 'a hand in milliseconds' run scene.json --hand units.csv --clock virtual --json
+holds '"ticks": 100'
 bad 'a speed that no hand has' 'up to 100 m/s' run scene.json --speed 1e300
 bad 'a time without end' 'up to 86400 s' run scene.json --seconds 1e9
 bad 'threads without a clock' 'virtual clock has no threads' run scene.json --threads paper --clock virtual
@@ -398,6 +420,7 @@ session=$!
 n=0
 until [ -n "$(find stopped -name ticks.npy -size +4k 2>/dev/null)" ] || [ $n -gt 1200 ]; do sleep 0.1; n=$((n + 1)); done
 kill -TERM $session
+kill -TERM $session # as timeout(1), which signals its child and its group
 wait $session && grep -q '"finished": true' stopped/session.json && passed=$((passed + 1)) || complain "a session that is stopped: exit $? $(cat err.txt)"
 # Whoever removes, moves or cuts a recording while it is made is told that it is lost.
 for harm in 'rm -r stopped' 'mv stopped away' 'truncate -s 4000 stopped/ticks.npy'; do
@@ -444,9 +467,12 @@ near() {
 }
 bad 'a mass that no motor holds' '--mass: expected 50 g to 250 g, found "300 g": the motors could not hold it' calibrate --emulator --mass '300 g'
 bad 'a mass that is too small' '--mass: expected 50 g to 250 g, found "49 g"' calibrate --emulator --mass '49 g'
-bad 'a mass that is none' '--mass' calibrate --emulator --mass '200 N'
+bad 'a mass that is none' 'unknown unit "N" in "200 N"; known units: kg, g' calibrate --emulator --mass '200 N'
+bad 'a mass in another unit' 'unknown unit "mg" in "200mg"' calibrate --emulator --mass 200mg
+bad 'a firmware of what is emulated' '--falcon-firmware has no effect with --emulator' calibrate --emulator --falcon-firmware scene.json
 good 'calibrate, from counts that are twice too few' calibrate --emulator --falcon-counts 2100 --json
 holds '"counts_per_torque_before": 2100.0'
+holds '"why_no_hold": null'
 near counts_per_torque 4200 0.005
 near arm_kg 0.21 0.01
 near hold_s 0.02 0.1 # the emulator's 20 ms; an exchange is 1 ms
@@ -462,6 +488,7 @@ good 'run, calibrated' run scene.json --hand falcon-emulator --clock virtual --s
 grep -qF 'runs as its calibration found it' err.txt && passed=$((passed + 1)) || complain "run does not say that the emulator is calibrated: $(cat err.txt)"
 sed 's/"counts_per_torque": [0-9.]*/"counts_per_torque": 5000/' "$stored" >file.json && mv file.json "$stored"
 good 'calibrate anew, the heaviest mass' calibrate --emulator --mass 0.25
+grep -qF 'hang 250 g on the grip' err.txt && passed=$((passed + 1)) || complain "the mass that is hung: $(cat err.txt)"
 grep -qE 'counts per N m   (419.|420.|421.)   \(5000 before: the forces were 1\.19 times' out.txt && passed=$((passed + 1)) || complain "a second calibration: $(cat out.txt)"
 holds 'this Falcon is emulated, and no other has its numbers'
 holds "used by          --hand falcon-emulator, as every command uses a real Falcon's: $stored"
@@ -497,6 +524,14 @@ done
 # --- bad usage
 bad 'unknown option' 'unknown option --frobnicate; see palpate touch --help' touch sample:skin --frobnicate
 bad 'a slip in an option' 'palpate touch: unknown option --materal; did you mean --material?' touch sample:skin --materal skin
+bad 'a long word' "unknown unit \"$(printf '%60s' | tr ' ' m)...\"" touch sample:skin --window "4$(printf '%300s' | tr ' ' m)"
+"$palpate" info "$(printf '%5000s' | tr ' ' a)" 2>err.txt
+[ "$(wc -c <err.txt)" -lt 300 ] && passed=$((passed + 1)) || complain 'a name of 5000 letters is repeated'
+bad 'samples and keys' '--keys has no effect with --samples' info --samples --keys
+bad 'samples of a file' 'SCENE has no effect with --samples' info skin.ply --samples
+bad 'places of no picture' '--picture-places belongs to --picture' perceive sample:skin --picture-places 20
+bad 'two pictures in one file' '--out and --picture: expected two files' perceive sample:skin --out p.svg --picture ./p.svg
+bad 'a hand without frames' '--hand belongs to --frames' render sample:skin --hand press --out no.png
 bad 'a word too many' 'found "0.5N" where no further word is expected' touch sample:skin 0.5N
 bad 'a slip in a command' 'did you mean touch?' tuch sample:skin
 bad 'unknown sample' 'palm' touch sample:elbow
@@ -591,6 +626,13 @@ bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
     [ $code -eq 2 ] && grep -qF 'out of memory' err.txt && ! grep -qF 'calling fini' err.txt
 ) && passed=$((passed + 1)) || complain "no memory: $(grep -F -e palpate: -e 'calling fini' err.txt)"
 mkdir full && : >full/out
+mkdir own && cp skin.ply own/deformed.ply && cp skin.ply own/kept.ply
+bad 'a touch over its cloud' '--out: own/deformed.ply is read as well' touch own/deformed.ply --out own
+(cd own && echo '{"cloud": "deformed.ply"}' >scene.json && ! "$palpate" touch scene.json --out . >/dev/null 2>&1 && cmp -s deformed.ply kept.ply && [ ! -e touch.json ]) &&
+    passed=$((passed + 1)) || complain 'a touch wrote over the cloud of its scene'
+cp deflection.npy own/rigidity.npy 2>/dev/null || cp 'a folder/rigidity.npy' own
+bad 'a touch over its law' '--out: own/rigidity.npy is read as well' touch own/kept.ply --stiffness 'grid:file=own/rigidity.npy,spacing=1' --out own
+bad 'a folder that is a stream' '--json without --out' touch sample:skin --json --out -
 bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
 # --- options that cannot apply
 for option in '--stiffness-property quality' '--stiffness-range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
@@ -612,7 +654,13 @@ bad 'an unknown command' 'frob' frob
 bad 'help on an unknown command' 'frob' help frob
 bad 'an answer that is no array' '.npy' solve plate.json --out plate.json
 cp plate.json plate.npy
-bad 'an answer over its problem' 'problem file itself' solve plate.npy --out ./plate.npy
+bad 'an answer over its problem' 'is read as well' solve plate.npy --out ./plate.npy
+cp w.npy D.npy && cp D.npy kept.npy
+sed 's/"cells":\[16,24\]/"cells":[32,48]/; s/"law":"constant","value":1/"law":"grid","file":"D.npy"/' plate.json >grid.json
+bad 'an answer over its rigidity' '--out: D.npy is read as well' solve grid.json --out D.npy
+sed 's/"cells":\[16,24\]/"cells":[32,48]/; s/"law":"point".*\]}/"law":"grid","file":"D.npy"}/' plate.json >load.json
+bad 'an answer over its load' '--out: ./D.npy is read as well' solve load.json --out ./D.npy
+cmp -s D.npy kept.npy && passed=$((passed + 1)) || complain 'solve wrote over what it read'
 sed 's/"constant","value"/"odd","value"/' plate.json >odd.json
 bad 'an unknown rigidity law' 'checker, grid' solve odd.json
 
@@ -688,7 +736,7 @@ JSON
     good 'the same once more' render sample:skin $small --out again.png
     cmp -s skin.png again.png && passed=$((passed + 1)) || complain 'the same picture has other bytes'
     good 'a picture of a scene' render soft.json --size 200x150 --force '0.5 N' --colour stiffness --colour-map cividis --dark --exaggerate 3 --view whole --out soft.png --json
-    for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000'; do holds "$key"; done
+    for key in '"force": 0.5' '"max_deflection"' '"drawn_on"' '"points": 4000' '"warnings": ['; do holds "$key"; done
     good 'a picture of a file' render skin.ply --place 0,0,0.0015 --window 40mm --cells 32 --size 64x48 --out file.png
     png file.png 64 48
     good 'a picture of a bare file' render bare.csv --place 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
@@ -859,8 +907,8 @@ mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
     bad 'beside the cloud' 'from its nearest point' $mesh 'at=1,1,1m radius=1mm smooth'
     bad 'no stroke' '--stroke' paint mesh.ply --out no.ply
     cp mesh.ply itself.ply
-    bad 'the cloud itself' '--out: ./itself.ply is the file of the cloud and would be overwritten' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
-    bad 'the cloud itself, converted' 'TARGET: itself.ply is the file of the cloud and would be overwritten' convert itself.ply itself.ply --length-unit mm
+    bad 'the cloud itself' '--out: ./itself.ply is read as well, and would be overwritten' paint itself.ply --uniform 1kPa --stroke 'at=1mm,1mm,0 radius=1mm value=2kPa' --out ./itself.ply
+    bad 'the cloud itself, converted' 'TARGET: itself.ply is read as well, and would be overwritten' convert itself.ply itself.ply --length-unit mm
     cmp -s mesh.ply itself.ply && passed=$((passed + 1)) || complain 'a cloud was written over'
     bad 'another kind of file' '.ply' paint mesh.ply --stroke 'at=1,1,0 radius=1mm smooth' --out no.stl
     bad 'an option of files for a scene of a sample' '--stiffness-range: expected a file' paint scene.json --stiffness-range 1kPa,2kPa --out no.ply --stroke 'at=0,0,0 radius=6mm smooth'
@@ -938,13 +986,13 @@ JSON
     holds 'has hidden 1 nodule in this stiffness; palpate hunt and palpate view score'
     unused() { # unused COMMAND...: it tells of variables that nothing reads, one of each kind, and of no others
         env PALPATE_CELS=8 PALPATE_HAND_OVER=hold PALPATE_ODD=1 PALPATE_EMPTY= PALPATE_CELLS=32 \
-            PALPATE_HOST_ISA=portable PALPATE_HAPLY=localhost:10001 "$palpate" "$@" >out.txt 2>err.txt ||
+            PALPATE_HOST_ISA=portable PALPATE_HAPLY=localhost:10001 PALPATE_BUILD=build PALPATE_LIBRARY=none "$palpate" "$@" >out.txt 2>err.txt ||
             complain "unused variables, $1: exit $? $(cat err.txt)"
         cat err.txt >>out.txt
         holds "environment's PALPATE_CELS is not used; did you mean PALPATE_CELLS?"
         holds "environment's PALPATE_HAND_OVER is not used; the key is compliance_law now: PALPATE_COMPLIANCE_LAW"
         holds "environment's PALPATE_ODD is not used; palpate info --keys lists the keys"
-        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA|HAPLY) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
+        grep -qE 'PALPATE_(CELLS|EMPTY|HOST_ISA|HAPLY|BUILD|LIBRARY) is not used' out.txt && complain "$1 tells of variables that are used: $(cat out.txt)"
     }
     unused info scan.json
     unused convert scan.json unused.ply
@@ -974,7 +1022,7 @@ good 'perceive' perceive soft.json --places 5 --reach 8mm --out path.svg --pictu
 holds 'a prediction, not a study'
 for file in path.svg object.svg; do [ -s $file ] && passed=$((passed + 1)) || complain "perceive did not write $file"; done
 good 'perceive as JSON' perceive soft.json --places 5 --reach 8mm --along 0,1,0 --json
-for key in '"prediction": true' '"weber_fraction": 0.07' '"floor_is_low": true' '"right_answers"' '"steps_in_passing"' '"felt_stiffness"' '"direction"'; do holds "$key"; done
+for key in '"prediction": true' '"weber_fraction": 0.07' '"floor_is_low": true' '"right_answers"' '"steps_in_passing"' '"felt_stiffness"' '"direction"' '"warnings": ['; do holds "$key"; done
 bad 'a path that leaves the surface' 'along the surface' perceive soft.json --along 0,0,1
 bad 'a path without a direction' 'expected a vector' perceive soft.json --along 0,0,0
 bad 'a reach of nothing' '--reach' perceive soft.json --reach 0

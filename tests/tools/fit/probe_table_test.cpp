@@ -50,6 +50,32 @@ TEST(ProbeTable, ReadsProbesThatAreMixedWithUnitsAndPlaces)
     EXPECT_TRUE(probes[0].time.empty());
 }
 
+TEST(ProbeTable, AByteOrderMarkIsNoPartOfTheFirstName)
+{
+    std::string two = "\xEF\xBB\xBFprobe,depth [mm],force,time\n";
+    for (const char* name : {"a", "b"})
+        for (int n = 0; n < 5; ++n)
+            two +=
+                std::string(name) + "," + std::to_string(n) + "," + std::to_string(n) + "," + std::to_string(n) + "\n";
+    EXPECT_EQ(parseProbes(two, "p").size(), 2u);
+    const TemporaryFolder folder;
+    EXPECT_TRUE(holdsProbes(folder.write("a.csv", "\xEF\xBB\xBF"
+                                                  "depth,force\n")));
+}
+
+TEST(ProbeTable, RowsOfOneProbeHaveOnePlace)
+{
+    const auto rows = [](const std::string& header, const std::string& name) {
+        std::string text = header + "depth [mm],force,x [mm],y,z\n";
+        for (int n = 0; n < 10; ++n)
+            text += name + std::to_string(n % 5) + "," + std::to_string(n % 5) + "," + (n < 5 ? "0" : "20") + ",0,0\n";
+        return text;
+    };
+    EXPECT_TRUE(says(rows("time,", "0,"), {"line 7", "one place", "(20.0 mm, 0 m, 0 m) after (0 m, 0 m, 0 m)",
+                                           "name them by a column \"probe\""}));
+    EXPECT_TRUE(says(rows("probe,", "a,"), {"line 7", "of probe a"}));
+}
+
 TEST(ProbeTable, WithoutNamesAllRowsAreOneProbeAndWithTimesItMayGoBack)
 {
     const auto probes = parseProbes("time,depth,force\n0,0,0\n1,1e-3,1\n2,1e-3,0.8\n3,0,0\n4,0,0\n", "p");

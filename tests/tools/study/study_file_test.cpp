@@ -18,6 +18,7 @@ TEST(StudyFiles, WhatIsWrittenIsRead)
                             .plan          = R"({"title": "t"})",
                             .clouds        = {"0a", "1b"},
                             .hand          = "falcon@3",
+                            .path          = "2c",
                             .clock         = "real",
                             .feltStiffness = {{"SOFT", 300.25}, {"AIR", std::nullopt}},
                             .version       = "0.2.0 abc"};
@@ -31,7 +32,7 @@ TEST(StudyFiles, OlderOnesNameNeitherHandNorClock)
     const StudyFile read =
         parseStudyFile(R"({"format": 1, "participant": "p", "plan": "{}", "clouds": ["0"]})", "study.json");
     EXPECT_EQ(read.participant, "p");
-    EXPECT_FALSE(read.hand || read.clock);
+    EXPECT_FALSE(read.hand || read.path || read.clock);
     EXPECT_TRUE(read.feltStiffness.empty());
 }
 

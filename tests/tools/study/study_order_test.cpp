@@ -209,6 +209,31 @@ TEST(StudyPlan, HasAsManyConditionsTasksAndRepetitionsAsParticipantsBear)
     EXPECT_TRUE(holds(said(2, 2, 1, 1, 501), {"statement", "a text of 1 to 500 bytes"}));
 }
 
+TEST(StudyPlan, TheFileOfAHandIsLookedForFromThePlan)
+{
+    const TemporaryFolder folder;
+    static_cast<void>(folder.write("s.json", R"({"cloud": "sample:sheet"})"));
+    const auto handOf = [&](const std::string& hand) {
+        return parsePlan(R"({"title": "t", "hand": ")" + hand + R"(", "conditions": [{"name": "a", "scene": "s.json"}],
+            "tasks": [)" + kRating +
+                             "]}",
+                         "plan.json", folder.path())
+            .hand;
+    };
+    EXPECT_EQ(handOf("hand.csv"), folder / "hand.csv");
+    EXPECT_EQ(handOf("/there/hand.csv"), "/there/hand.csv");
+    EXPECT_EQ(handOf("press"), "press");
+    EXPECT_EQ(handOf("falcon"), "falcon");
+}
+
+TEST(StudyPlan, PairsMayBeInBothOrdersWhereNoAnswerIsRight)
+{
+    EXPECT_EQ(plan(2, R"({"name": "s", "kind": "two-alternative", "question": "?", "pairs": [["a", "b"], ["b", "a"]]})")
+                  .tasks[0]
+                  .pairs.size(),
+              2u);
+}
+
 TEST(StudyPlan, BadOnesAreRefusedInOneSentence)
 {
     const TemporaryFolder folder;
@@ -252,6 +277,12 @@ TEST(StudyPlan, BadOnesAreRefusedInOneSentence)
     refused(a + "," + b,
             R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "b"]], "right": "b"})",
             "first or second");
+    for (const char* right : {"first", "second"})
+        refused(
+            a + "," + b,
+            R"({"name": "n", "kind": "two-alternative", "question": "?", "pairs": [["a", "b"], ["b", "a"]], "right": ")" +
+                std::string(right) + R"("})",
+            "\"a\" and \"b\" in both");
     refused(a, kRating, "repetitions", R"(, "repetitions": 0)");
     refused(a, kRating, "seconds", R"(, "seconds": 0)");
     refused(a, kRating, "to 3600 s, found 3600.5", R"(, "seconds": 3600.5)");

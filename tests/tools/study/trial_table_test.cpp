@@ -63,6 +63,28 @@ TEST(TrialTable, GivesBackWhatWasAppendedAlsoCommasQuotesAndEmptyCells)
     for (std::uint64_t n = 1; n <= 3; ++n) demandSame(again.rows()[n - 1], rowNumber(n));
 }
 
+TEST(TrialTable, OfAnEarlierVersionGetsTheColumnThatSaysWhetherTheTrialWasFelt)
+{
+    const TemporaryFolder folder;
+    const std::string     head = "participant,trial,block,task,kind,condition,condition_second,question,answer,correct,"
+                                 "reaction_time_s,seed,session,session_second,force_mean_N,force_peak_N,version";
+    const auto file = folder.write("trials.csv", head + "\np,1,1,r,rating,c,,\"a, \"\"b\"\"\",4,,1.50,7,s,,1,1.2,v\n"
+                                                        "p,2,1,r,rating,c,,q,4,,1,7,s,,0,0,v\np,3,");
+    ASSERT_EQ(readTrials(file).size(), 2u);
+    EXPECT_TRUE(readTrials(file)[0].wasFelt());
+    EXPECT_FALSE(readTrials(file)[1].wasFelt());
+
+    TrialTable table(file);
+    TrialRow   row = rowNumber(3);
+    row.felt       = false; // in one touch of two
+    table.append(row);
+    EXPECT_TRUE(
+        contentsOf(file).starts_with(head + ",felt\np,1,1,r,rating,c,,\"a, \"\"b\"\"\",4,,1.50,7,s,,1,1.2,v,\n"))
+        << contentsOf(file);
+    ASSERT_EQ(readTrials(file).size(), 3u);
+    EXPECT_FALSE(readTrials(file)[2].wasFelt());
+}
+
 TEST(TrialTable, OfMoreThanAHundredThousandTrialsIsRefusedAndNotWritten)
 {
     const TemporaryFolder folder;
@@ -72,14 +94,14 @@ TEST(TrialTable, OfMoreThanAHundredThousandTrialsIsRefusedAndNotWritten)
     }
     {
         std::ofstream out(file, std::ios::app);
-        for (int n = 1; n <= 100'000; ++n) out << "p," << n << ",1,r,rating,c,,q,4,,1,7,s,,1,1,v\n";
+        for (int n = 1; n <= 100'000; ++n) out << "p," << n << ",1,r,rating,c,,q,4,,1,7,s,,1,1,v,1\n";
     }
     TrialTable table(file);
     const auto size = std::filesystem::file_size(file);
     ASSERT_EQ(table.rows().size(), 100'000u);
     EXPECT_TRUE(holds(refusalOf([&] { table.append(rowNumber(100'001)); }), {"trials.csv", "100000 trials"}));
     EXPECT_EQ(std::filesystem::file_size(file), size) << "a table that nobody can read is not written";
-    std::ofstream(file, std::ios::app) << "p,100001,1,r,rating,c,,q,4,,1,7,s,,1,1,v\n";
+    std::ofstream(file, std::ios::app) << "p,100001,1,r,rating,c,,q,4,,1,7,s,,1,1,v,1\n";
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(readTrials(file)); }),
                       {"trials.csv: line 100002", "at most 100000 trials"}));
 }
@@ -125,8 +147,7 @@ TEST(TrialTable, ARowForWhichThereIsNoRoomLeavesTheTableAsItWas)
             const SizeLimit limit(whole.size() + room);
             return refusalOf([&] { table.append(rowNumber(2)); });
         }();
-        EXPECT_TRUE(holds(said, {"trials.csv: cannot be written: ", "File too large"}))
-            << said;
+        EXPECT_TRUE(holds(said, {"trials.csv: cannot be written: ", "File too large"})) << said;
         EXPECT_EQ(contentsOf(file), whole) << room;
         EXPECT_EQ(table.rows().size(), 1u);
     }
@@ -172,14 +193,14 @@ TEST(TrialTable, ATornHeaderIsWrittenAnewAndOthersTablesAreRefused)
         return contentsOf(other / "t.csv");
     }();
     refused("a,b\n1,2\n", "line 1: expected the columns " + header.substr(0, header.size() - 1) + ", found others");
-    refused(header + "P01,1\n", "line 2: expected 17 columns, found 2");
-    refused(header + "P01,one,1,,,,,,,,1,1,,,1,1,\n", "column trial");
-    refused(header + "P01,1,1,,,,,,,maybe,1,1,,,1,1,\n", "column correct");
-    refused(header + "P01,1,1,,taste,,,,4,,1,1,,,1,1,\n", "column kind: expected rating, yes-no or two-alternative");
-    refused(header + "P01,2,1,,rating,,,,4,,1,1,,,1,1,\n", "line 2: column trial: expected 1, found 2");
-    refused(header + "P01,1,1,,rating,,,,6,,1,1,,,1,1,\n", "column answer: expected 1 to 5, found \"6\"");
-    refused(header + "P01,1,1,,yes-no,,,,first,,1,1,,,1,1,\n", "expected yes or no");
-    refused(header + "P01,1,1,,two-alternative,,,,banana,,1,1,,,1,1,\n", "expected first or second");
+    refused(header + "P01,1\n", "line 2: expected 18 columns, found 2");
+    refused(header + "P01,one,1,,,,,,,,1,1,,,1,1,,\n", "column trial");
+    refused(header + "P01,1,1,,,,,,,maybe,1,1,,,1,1,,\n", "column correct");
+    refused(header + "P01,1,1,,taste,,,,4,,1,1,,,1,1,,\n", "column kind: expected rating, yes-no or two-alternative");
+    refused(header + "P01,2,1,,rating,,,,4,,1,1,,,1,1,,\n", "line 2: column trial: expected 1, found 2");
+    refused(header + "P01,1,1,,rating,,,,6,,1,1,,,1,1,,\n", "column answer: expected 1 to 5, found \"6\"");
+    refused(header + "P01,1,1,,yes-no,,,,first,,1,1,,,1,1,,\n", "expected yes or no");
+    refused(header + "P01,1,1,,two-alternative,,,,banana,,1,1,,,1,1,,\n", "expected first or second");
 }
 
 } // namespace
