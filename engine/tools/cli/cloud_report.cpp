@@ -38,9 +38,11 @@ void refuseSourceAsTarget(const std::string& option, const std::string& source, 
 void refuseSameTarget(const std::string& first, const std::string& one, const std::string& second,
                       const std::string& other)
 {
-    std::error_code none; // a folder that is not there is named when the file is written
-    if (one.empty() || other.empty()) return;
-    if (std::filesystem::weakly_canonical(one, none) != std::filesystem::weakly_canonical(other, none)) return;
+    const auto whole = [](const std::string& file) {
+        std::error_code none; // a folder that is not there is named when the file is written
+        return std::filesystem::weakly_canonical(std::filesystem::absolute(file, none), none);
+    };
+    if (one.empty() || other.empty() || whole(one) != whole(other)) return;
     throw Error(first + " and " + second + ": expected two files, found " + shownText(one, kMostOfPath) +
                 " twice, so that one would be lost; name another file");
 }
