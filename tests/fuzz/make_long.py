@@ -229,11 +229,11 @@ def single(count):
 
 def conditions(count):
     head = trials(0)
-    return head + "".join(f"p,{n + 1},1,r,rating,c{n},,q,4,,1,7,s,,1,1,v\n" for n in range(count))
+    return head + "".join(f"p,{n + 1},1,r,rating,c{n},,q,4,,1,7,s,,1,1,v,1\n" for n in range(count))
 
 
 def cells_of_nothing(count):
-    return trials(0) + "".join(f"p,{n + 1},1,r,rating,c,,q,4,,1,7,s,,1,1,v\n" for n in range(count))
+    return trials(0) + "".join(f"p,{n + 1},1,r,rating,c,,q,4,,1,7,s,,1,1,v,1\n" for n in range(count))
 
 
 # What single readers once took too long for, or too much memory.
