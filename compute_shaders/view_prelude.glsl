@@ -39,7 +39,8 @@ float litBy(vec3 normal)
     const float kAmbient = 0.46, kDiffuse = 0.80; // of the light [1]
     const float kWrap = 0.25;                     // reach of the light around the object [1]
     float lit = max(0.0, (dot(normal, kLight) + kWrap) / (1.0 + kWrap));
-    return kAmbient + kDiffuse * lit * lit;
+    float relief = kAmbient + kDiffuse * lit * lit;
+    return relief + frame.even * (1.0 - relief);
 }
 
 /// Returns the light's reflection on a smooth surface [1].
@@ -55,7 +56,7 @@ float reflection(vec3 normal, vec3 place)
 float cueOf(float hollow, float facing)
 {
     const float kDarkest = -0.45, kLightest = 0.18;
-    return clamp(-frame.cueGain * facing * facing * hollow, kDarkest, kLightest);
+    return (1.0 - frame.even) * clamp(-frame.cueGain * facing * facing * hollow, kDarkest, kLightest);
 }
 
 /// Returns the colour of a lit point of a fast picture.

@@ -53,7 +53,7 @@ struct ViewFrame {
     float cueRadius;   // of the surroundings that distinguish hollows from humps [m]
     float cueGain;     // of their rise [1]
     float shine;       // share of the surface's light that is a reflection [1]
-    float unused;
+    float even;         // share of the light that comes from everywhere alike, and shows no relief [1]
     float hiddenShare;  // share of a shape that shows through the surface [1]
     uint  orthographic; // 1: the eye is infinitely far away
 };

@@ -149,8 +149,11 @@ void RealSession::servoThread()
         const Clock::duration stopped = stopping.stopAtZero(force_.governor().force());
         start += stopped;
         stopped_ += stopped.count();
-        if (stopped.count() > 0) sleep.restart(); // part of the stop, after which the hand engages anew
-        if (isFinal(state.fault)) break;          // it does not come back without close() and open()
+        if (stopped.count() > 0) {
+            sleep.restart(); // part of the stop, after which the hand engages anew
+            if (settings_.onStart) settings_.onStart(start);
+        }
+        if (isFinal(state.fault)) break; // it does not come back without close() and open()
     }
 }
 

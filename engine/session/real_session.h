@@ -27,7 +27,8 @@ struct SessionView {
 struct RealSessionSettings {
     double         seconds = 5; ///< [s]
     SessionThreads threads = SessionThreads::servo;
-    /// Is given the instant of time 0, on the servo's thread, before the first tick; as onTick.
+    /// Is given the instant of time 0, on the servo's thread, before the first tick; and again when Ctrl-Z has stopped
+    /// the program, which moves it, because a pause is no time of the session. As onTick.
     std::function<void(std::chrono::steady_clock::time_point)> onStart{};
     OnTick onTick{}; ///< on the servo's thread, every tick: must neither wait nor allocate; may be empty
     std::function<void(const SessionView&)> onView{};         ///< on the calling thread, every viewPeriod; may be empty

@@ -210,11 +210,14 @@ struct Recording::Impl {
         writer = quietThread([this] { work(); });
     }
 
-    /// Takes the clocks of the first record, unless begin() did.
-    void beginNow() noexcept
+    /// Takes the clocks of time 0 from the first record, unless begin() did.
+    /// \param time  of the record, which is of this moment; a caller's may begin anywhere [s]
+    void beginNow(double time) noexcept
     {
+        constexpr double kMost = 4e9; // [s] 127 years: more nanoseconds would not fit
         if (begun.load(std::memory_order_relaxed)) return;
-        clocks = SessionClocks::at(Clock::now());
+        const std::chrono::duration<double> ago(std::clamp(time, -kMost, kMost));
+        clocks = SessionClocks::at(Clock::now() - std::chrono::duration_cast<Clock::duration>(ago));
         begun.store(true, std::memory_order_release);
     }
 
@@ -382,13 +385,13 @@ void Recording::begin(const SessionClocks& clocks) noexcept
 
 void Recording::push(const TickRecord& record) noexcept
 {
-    if (impl_->pushed++ == 0) impl_->beginNow();
+    if (impl_->pushed++ == 0) impl_->beginNow(record.time);
     if (!impl_->stopped.load(std::memory_order_relaxed)) static_cast<void>(impl_->ring.push(record));
 }
 
 void Recording::pushWaiting(const TickRecord& record) noexcept
 {
-    if (impl_->pushed++ == 0) impl_->beginNow();
+    if (impl_->pushed++ == 0) impl_->beginNow(record.time);
     while (!impl_->stopped.load(std::memory_order_acquire) && !impl_->ring.push(record)) std::this_thread::yield();
 }
 

@@ -77,7 +77,7 @@ public:
     Recording(const Recording&)            = delete;
     Recording& operator=(const Recording&) = delete;
 
-    /// Takes the clocks of time 0. Without it the first record does, with the clocks of that moment.
+    /// Takes the clocks of time 0. Without it the first record does: it is of that moment, so time 0 was its time ago.
     /// \pre no record has been pushed
     void begin(const SessionClocks& clocks) noexcept;
 

@@ -279,7 +279,7 @@ std::vector<SceneKey> placeKeys()
     return {
         {.name  = "place",
          .help  = "where it is touched, on the cloud [where a sample has something to feel; on a file's cloud where it "
-                  "comes nearest to the viewer, at its largest z]",
+                  "comes nearest to the viewer, at its largest z, and in the middle of a flat top]",
          .group = kTouch,
          .kind  = Kind::point,
          .unit  = "m",

@@ -14,9 +14,10 @@ SessionTap::SessionTap(Recording* recording, std::vector<TickStream*> streams)
 void SessionTap::begin(std::chrono::steady_clock::time_point start) noexcept
 {
     const SessionClocks clocks = SessionClocks::at(start);
-    begun_                     = true;
-    newest_.store(0, std::memory_order_relaxed);
-    if (recording_) recording_->begin(clocks);
+    clocks_.draft()            = clocks;
+    clocks_.publish();
+    if (recording_ && !begun_) recording_->begin(clocks);
+    begun_ = true;
     for (TickStream* const stream : streams_) stream->begin(clocks);
 }
 
@@ -37,9 +38,13 @@ void SessionTap::pushWaiting(const TickRecord& record) noexcept
 
 void SessionTap::mark(std::string_view text)
 {
-    const Marker marker{newest_.load(std::memory_order_relaxed), markerText(text)};
+    const std::lock_guard lock(mutex_);
+    clocks_.take();
+    const SessionClocks* const known  = clocks_.held();
+    const SessionClocks        clocks = known ? *known : SessionClocks::at(std::chrono::steady_clock::now());
+    const Marker               marker{newest_.load(std::memory_order_relaxed), markerText(text)};
     if (recording_) recording_->mark(marker);
-    for (TickStream* const stream : streams_) stream->mark(marker);
+    for (TickStream* const stream : streams_) stream->mark(marker, clocks);
     ++marked_;
 }
 

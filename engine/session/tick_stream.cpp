@@ -50,10 +50,11 @@ void TickStream::pushWaiting(const TickRecord& record) noexcept
     while (!ring_.push(tick)) std::this_thread::yield();
 }
 
-void TickStream::mark(const Marker& marker)
+void TickStream::mark(const Marker& marker, const SessionClocks& clocks)
 {
     const std::lock_guard lock(mutex_);
-    if (markers_.size() < kMostMarkers) markers_.push_back(marker);
+    ++markersSeen_; // also of what finds no room: a gap in the numbers tells of it
+    if (markers_.size() < kMostMarkers) markers_.push_back({marker, clocks, markersSeen_});
 }
 
 StreamReport TickStream::finish()
@@ -80,20 +81,19 @@ void TickStream::sendTicks()
     for (auto ticks = ring_.front(); !ticks.empty(); ticks = ring_.front()) {
         for (const StreamedTick& tick : ticks)
             if (outlet_->send(tick)) ++sent_;
-        sentClocks_ = ticks.back().clocks;
         ring_.pop(ticks.size());
     }
 }
 
 void TickStream::sendMarkers()
 {
-    std::vector<Marker> markers;
+    std::vector<StreamedMarker> markers;
     {
         const std::lock_guard lock(mutex_);
         markers.swap(markers_);
     }
-    for (Marker& marker : markers)
-        if (outlet_->send({std::move(marker), sentClocks_, ++markersSeen_})) ++markersSent_;
+    for (const StreamedMarker& marker : markers)
+        if (outlet_->send(marker)) ++markersSent_;
 }
 
 } // namespace palp

@@ -24,8 +24,8 @@ struct StreamedTick {
 /// A marker on its way to another program.
 struct StreamedMarker {
     Marker        marker;
-    SessionClocks clocks;     ///< as of a tick
-    std::uint64_t number = 0; ///< counts the stream's markers from 1
+    SessionClocks clocks;     ///< of time 0 of its session
+    std::uint64_t number = 0; ///< counts the stream's markers from 1, also those that are dropped
 };
 
 /// A way out of the program for the ticks of a session while it runs.
@@ -70,12 +70,13 @@ public:
     TickStream(const TickStream&)            = delete;
     TickStream& operator=(const TickStream&) = delete;
 
-    /// Takes the clocks of a session's time 0, for the ticks that follow.
+    /// Takes the clocks of a session's time 0, for the ticks that follow; again after a pause that is no time of it.
     void begin(const SessionClocks& clocks) noexcept { clocks_ = clocks; }
     void push(const TickRecord& record) noexcept;
     /// Waits for room in the ring: for the virtual clock, which is faster than any network.
     void pushWaiting(const TickRecord& record) noexcept;
-    void mark(const Marker& marker);
+    /// \param clocks  of time 0 of the marker's session
+    void mark(const Marker& marker, const SessionClocks& clocks);
 
     /// Sends what is left and ends the thread. Later calls return the same.
     StreamReport finish();
@@ -89,10 +90,10 @@ private:
     TickRing<StreamedTick>      ring_;
     SessionClocks               clocks_;     ///< of the producer, as is the next
     std::uint64_t               pushed_ = 0; ///< read after finish() only
-    std::mutex                  mutex_;      ///< of the next; the producer never takes it
-    std::vector<Marker>         markers_;
-    SessionClocks               sentClocks_; ///< of the stream's thread, as are the next: of the newest tick
-    std::uint64_t               sent_ = 0, markersSeen_ = 0, markersSent_ = 0;
+    std::mutex                  mutex_;      ///< of the next two; the producer never takes it
+    std::vector<StreamedMarker> markers_;    ///< that wait
+    std::uint64_t               markersSeen_ = 0;
+    std::uint64_t               sent_ = 0, markersSent_ = 0; ///< of the stream's thread
     std::atomic<bool>           finishing_{false};
     std::thread                 thread_;
 };

@@ -22,6 +22,8 @@ def _write(path, title, body, width=WIDTH):
 
 
 def _ticks(low, high):
+    if not high > low:
+        return np.array([low])
     step = 10 ** np.floor(np.log10((high - low) / 4))
     step *= min((m for m in (1, 2, 5, 10) if (high - low) / (m * step) <= 6), default=10)
     return np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
@@ -31,6 +33,7 @@ def lines(path, title, x_label, y_label, curves):
     """Draws curves, {name: (x, y)}."""
     low = np.min([[np.min(x), np.min(y)] for x, y in curves.values()], axis=0)
     high = np.max([[np.max(x), np.max(y)] for x, y in curves.values()], axis=0)
+    high = np.where(high > low, high, low + 1)  # of curves that are all the same
     right, bottom = WIDTH - 20, HEIGHT - EDGE
     px = lambda x: EDGE + (np.asarray(x) - low[0]) / (high[0] - low[0]) * (right - EDGE)
     py = lambda y: bottom - (np.asarray(y) - low[1]) / (high[1] - low[1]) * (bottom - 40)
@@ -68,7 +71,8 @@ def points(path, title, unit, x, y, values):
     for n in range(100):
         body += f'<rect x="{bar:.0f}" y="{50 + 3 * (99 - n)}" width="18" height="3.5" fill="{_colour(n / 99)}"/>'
     for v in _ticks(low, high):
-        body += f'<text x="{bar + 26:.0f}" y="{354 - 300 * (v - low) / (high - low):.1f}">{v:g} {unit}</text>'
+        share = (v - low) / (high - low) if high > low else 0.5
+        body += f'<text x="{bar + 26:.0f}" y="{354 - 300 * share:.1f}">{v:g} {unit}</text>'
     body += f'<line x1="{EDGE}" y1="{HEIGHT - 16}" x2="{EDGE + 10 * scale:.0f}" y2="{HEIGHT - 16}" stroke="black"/>'
     body += f'<text x="{EDGE + 10 * scale + 8:.0f}" y="{HEIGHT - 12}">10 mm</text>'
     _write(path, title, body)

@@ -376,6 +376,37 @@ TEST(GeneratedHand, DrapedBeyondABorderItKeepsTheLastHeight)
     for (double t = 0.5; t < 3; t += 0.01) EXPECT_NEAR(hand.position(t).z, -2e-3, 1e-6);
 }
 
+/// A square of 41 x 41 points, 100 mm wide, with a height for each.
+template <class Height>
+PointCloud square(Height height)
+{
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i <= 40; ++i)
+        for (int j = 0; j <= 40; ++j) {
+            const glm::dvec2 at(2.5e-3 * i, 2.5e-3 * j);
+            points.emplace_back(at, height(at));
+        }
+    return {points, std::vector<double>(points.size(), 1e5), StiffnessKind::modulus};
+}
+
+TEST(GeneratedHand, AFlatCloudIsTouchedInItsMiddleAndACurvedOneAtItsTop)
+{
+    const auto       placeOn = [](const PointCloud& cloud) { return placeOf(Scene(), cloud); };
+    std::mt19937     random(7);
+    const auto       noise = [&] { return std::uniform_real_distribution<double>(-0.4e-3, 0.4e-3)(random); };
+    const glm::dvec3 middle(50e-3, 50e-3, 0);
+
+    EXPECT_EQ(placeOn(square([](const glm::dvec2&) { return 0.0; })), middle);
+    EXPECT_LT(glm::length(placeOn(square([&](const glm::dvec2&) { return noise(); })) - middle), 1e-3);
+    const auto box = [](const glm::dvec2& at) { return at.x > 2e-3 && at.x < 98e-3 ? 0.0 : -20e-3; };
+    EXPECT_EQ(placeOn(square(box)), middle) << "a flat top";
+    const glm::dvec2 top(30e-3, 60e-3);
+    const auto       dome = [&](const glm::dvec2& at) { return -glm::dot(at - top, at - top) / 0.1; };
+    EXPECT_LT(glm::length(placeOn(square(dome)) - glm::dvec3(top, 0)), 1e-9);
+    const auto slope = [](const glm::dvec2& at) { return at.x + at.y; };
+    EXPECT_EQ(placeOn(square(slope)).x, 0.1) << "the highest corner, as a slope has nothing flat";
+}
+
 TEST(GeneratedHand, ThePlaceOfASceneIsOnItsCloudOnTheHandsSide)
 {
     const Scene scene = parseScene(R"({"cloud": "sample:ellipsoid", "points": 5000})", "s.json", ".");

@@ -25,10 +25,11 @@ TEST(LslOutlet, TicksAndMarkersAreOfferedWithLabelsAndTimesOnTheLayersClock)
     const TemporaryFolder folder;
     ::setenv("FAKE_LSL_LOG", (folder / "log").c_str(), 1);
     {
-        TickStream stream(std::make_unique<LslOutlet>("Rig 2", PALPATE_FAKE_LSL));
-        stream.begin(SessionClocks::at(std::chrono::steady_clock::now())); // 5000 s on the layer's clock
-        stream.push(recordNumber(2000));                                   // 2 s later
-        stream.mark({2.0, "left hand"});
+        TickStream          stream(std::make_unique<LslOutlet>("Rig 2", PALPATE_FAKE_LSL));
+        const SessionClocks clocks = SessionClocks::at(std::chrono::steady_clock::now()); // 5000 s on the layer's clock
+        stream.begin(clocks);
+        stream.push(recordNumber(2000)); // 2 s later
+        stream.mark({2.0, "left hand"}, clocks);
         EXPECT_EQ(stream.finish().sent, 1u);
     }
     const auto lines = linesOf(contentsOf(folder / "log"));

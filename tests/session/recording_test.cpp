@@ -193,6 +193,25 @@ TEST(Recording, TimeZeroIsTheFirstTickWhereNobodyBegan)
     }
 }
 
+TEST(Recording, TimeZeroIsAsLongAgoAsTheFirstTickSays)
+{
+    const TemporaryFolder folder;
+    for (const double time : {1000.0, -3.0, 1e300}) {
+        Recording  recording(folder / std::to_string(time).substr(0, 6), someInfo());
+        TickRecord record = recordNumber(0);
+        record.time       = time;
+        const auto before = std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
+        recording.push(record);
+        const auto after = std::chrono::nanoseconds(Clock::now().time_since_epoch()).count();
+        static_cast<void>(recording.finish());
+        const auto clocks = readSession(folder / std::to_string(time).substr(0, 6)).clocks;
+        ASSERT_TRUE(clocks) << time;
+        if (time > 1e9) continue; // there is no such clock, and no overflow
+        EXPECT_GE(clocks->monotonic + std::int64_t(time * 1e9), before) << time;
+        EXPECT_LE(clocks->monotonic + std::int64_t(time * 1e9), after) << time;
+    }
+}
+
 TEST(Recording, MarkersAreLinesOfJsonThatNothingCanBreak)
 {
     const TemporaryFolder folder;

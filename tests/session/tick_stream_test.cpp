@@ -90,12 +90,14 @@ TEST(UdpStream, AMarkerIsADatagramOfItsOwn)
     const Receiver receiver;
     TickStream     stream(openOutlet(receiver.address()));
 
-    stream.mark({0.75, "left hand"});
+    stream.mark({0.75, "left hand"}, {111, 222});
     const std::string data = receiver.next();
 
     ASSERT_EQ(data.size(), 32u + 8 + 9);
     EXPECT_EQ(at<std::uint16_t>(data, 6), 1);
     EXPECT_EQ(at<std::uint64_t>(data, 8), 1u);
+    EXPECT_EQ(at<std::int64_t>(data, 16), 111);
+    EXPECT_EQ(at<std::int64_t>(data, 24), 222);
     EXPECT_EQ(at<double>(data, 32), 0.75);
     EXPECT_EQ(data.substr(40), "left hand");
     EXPECT_EQ(stream.finish().markers, 1u);
@@ -112,9 +114,14 @@ public:
         last = tick.number;
         return true;
     }
-    bool send(const StreamedMarker& /*marker*/) noexcept override { return true; }
+    bool send(const StreamedMarker& marker) noexcept override
+    {
+        lastMarker = marker.number;
+        return true;
+    }
 
-    std::uint64_t last = 0;
+    std::uint64_t              last = 0;
+    std::atomic<std::uint64_t> lastMarker{0};
 
 private:
     std::atomic<bool>& goOn_;
@@ -142,6 +149,25 @@ TEST(TickStream, AReceiverThatStopsCostsTheServoNothingAndTheDroppedAreCounted)
     EXPECT_GT(report.dropped, 10'000u);
     EXPECT_LE(slow.last, std::uint64_t(kMany));
     EXPECT_EQ(stream.finish().sent, report.sent) << "a second end is the same end";
+}
+
+TEST(TickStream, MarkersThatAreDroppedLeaveAGapInTheirNumbers)
+{
+    std::atomic<bool> goOn = false;
+    auto              made = std::make_unique<SlowOutlet>(goOn);
+    const SlowOutlet& slow = *made;
+    TickStream        stream(std::move(made));
+    constexpr int     kMany = 1000; // four times as many as wait
+
+    stream.push(recordNumber(0)); // which holds it up
+    for (int i = 0; i < kMany; ++i) stream.mark({0, "x"}, {});
+    goOn = true;
+    while (slow.lastMarker == 0) std::this_thread::sleep_for(1ms); // those that waited are on their way: there is room
+    stream.mark({0, "after the flood"}, {});
+    const StreamReport report = stream.finish();
+
+    EXPECT_LT(report.markers, std::uint64_t(kMany));
+    EXPECT_EQ(slow.lastMarker, std::uint64_t(kMany + 1));
 }
 
 TEST(UdpStream, WhatNobodyListensToIsDropped)
@@ -204,6 +230,51 @@ TEST(SessionTap, MarkersGetTheTimeOfTheNewestTickEverywhere)
     EXPECT_EQ(session.clocks->realtime, at<std::int64_t>(marker, 16)) << "one clock for both";
 }
 
+TEST(SessionTap, AMarkerBeforeTheFirstTickHasTheClocksOfItsMoment)
+{
+    const Receiver receiver;
+    TickStream     stream(openOutlet(receiver.address()));
+    stream.begin({111, 222}); // of a session before
+    SessionTap tap(nullptr, {&stream});
+
+    const std::int64_t before = SessionClocks::at(std::chrono::steady_clock::now()).realtime;
+    tap.mark("ready");
+    const std::string  marker = receiver.next();
+    const std::int64_t after  = SessionClocks::at(std::chrono::steady_clock::now()).realtime;
+
+    ASSERT_GE(marker.size(), 40u);
+    EXPECT_EQ(at<double>(marker, 32), 0);
+    EXPECT_GE(at<std::int64_t>(marker, 16), before - 1'000'000) << "a clock may be set by a little meanwhile";
+    EXPECT_LE(at<std::int64_t>(marker, 16), after + 1'000'000);
+}
+
+TEST(SessionTap, AfterAPauseStreamsGetTimeZeroAnewAndARecordingKeepsIt)
+{
+    const TemporaryFolder folder;
+    const Receiver        receiver;
+    TickStream            stream(openOutlet(receiver.address()));
+    Recording             recording(folder / "run", someInfo());
+    SessionTap            tap(&recording, {&stream});
+    const auto            start   = std::chrono::steady_clock::now();
+    const auto            clockOf = [](const std::string& data) { return at<std::int64_t>(data, 24); };
+
+    tap.begin(start);
+    tap.push(recordNumber(1));
+    const std::string first = receiver.next();
+    tap.begin(start + 5s); // the program was stopped for as long
+    tap.push(recordNumber(2));
+    const std::string second = receiver.next();
+    tap.mark("on");
+    const std::string marker = receiver.next();
+
+    ASSERT_FALSE(marker.empty());
+    EXPECT_EQ(clockOf(second) - clockOf(first), 5'000'000'000);
+    EXPECT_EQ(clockOf(marker), clockOf(second));
+    EXPECT_EQ(at<double>(marker, 32), recordNumber(2).time);
+    static_cast<void>(recording.finish());
+    EXPECT_EQ(readSession(folder / "run").clocks->monotonic, clockOf(first));
+}
+
 TEST(UdpStream, TheLinesOfPythonInThePageReadIt)
 {
     const char* const named  = std::getenv("PALPATE_PYTHON");
@@ -233,7 +304,7 @@ TEST(UdpStream, TheLinesOfPythonInThePageReadIt)
     std::string said;
     for (int i = 0; i < 2000 && said.find("a word") == std::string::npos; ++i) { // until python listens
         stream.push(recordNumber(300));
-        stream.mark({0.5, "a word"});
+        stream.mark({0.5, "a word"}, {});
         pollfd reader{pipe[0], POLLIN, 0};
         if (::poll(&reader, 1, 10) != 1) continue;
         std::array<char, 4096> text{};

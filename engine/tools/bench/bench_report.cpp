@@ -128,8 +128,11 @@ void printText(std::ostream& out, const BenchReport& report)
 {
     out << "Palpate on " << report.solver << "; " << report.processor << "\n"
         << "CHOLMOD: " << report.cholmod << "\nEigen: " << report.eigen << "; nanoflann: " << report.nanoflann << "\n"
-        << "medians (quartiles) in ms of processor time, one thread each, " << report.runs
-        << " runs in turns; ratio = peer / Palpate\n\n";
+        << "medians (quartiles) in ms of "
+        << (report.clock == Clock::processor
+                ? "processor time, one thread each"
+                : "time on the wall for Palpate and of processor time for peers, one thread")
+        << ", " << report.runs << " runs in turns; ratio = peer / Palpate\n\n";
     char head[400];
     std::snprintf(head, sizeof head, kColumns, "case", "map", "nodes", "accuracy", "peer", "peer [ms]", "Palpate [ms]",
                   "ratio", "error", "peer's", "steps", "work");

@@ -12,6 +12,7 @@ namespace palp::bench {
 /// The measurements, and the machine and libraries on which they were made.
 struct BenchReport {
     std::string              solver, processor, cholmod, eigen, nanoflann;
+    Clock                    clock = Clock::processor; ///< of Palpate's times; peers run on the CPU
     int                      runs  = 0;
     bool                     quick = false;
     std::vector<std::string> environment; ///< NAME=value, variables that keep libraries to one thread

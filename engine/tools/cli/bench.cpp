@@ -139,6 +139,7 @@ BenchReport measure(const BenchOptions& o)
         compute::Context context(compute::ContextSettings{.processor = o.solver});
         sayPassedOver(context.processor().name, context.note());
         report.solver = context.processor().name;
+        report.clock  = clockOf(context);
         if (wants(plateCases())) {
             const PlateKernels kernels(context, scheduleOf(o));
             report.rows = measurePlates(context, kernels, plates, onStep);

@@ -1,10 +1,17 @@
 #include "engine/tools/gui/controls.h"
 
+#include <algorithm>
+
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/tools/gui/key_bindings.h"
 
 namespace palp {
+namespace {
+
+constexpr const char* kPainted = "its object is being painted";
+
+} // namespace
 
 void Controls::resetView()
 {
@@ -31,8 +38,19 @@ void Controls::switchTool()
 
 void Controls::resizeBrush(double factor)
 {
-    parts_.state.brush.radius *= factor;
-    say("brush of " + formatQuantity(parts_.state.brush.radius, "m"));
+    double& radius = parts_.state.brush.radius;
+    radius         = std::clamp(radius * factor, BrushChoice::kSmallest, BrushChoice::kLargest);
+    say("brush of " + formatQuantity(radius, "m"));
+}
+
+void Controls::undo()
+{
+    if (parts_.paint.undo(parts_.object.stage())) endRecording(kPainted);
+}
+
+void Controls::redo()
+{
+    if (parts_.paint.redo(parts_.object.stage())) endRecording(kPainted);
 }
 
 /// Releases the object, whichever hand is in use; never quits.
@@ -52,7 +70,14 @@ void Controls::goOn()
 {
     parts_.notices.clearFaults();
     parts_.session.resume();
+    endRecording("the session begins anew");
     parts_.session.end();
+}
+
+void Controls::reset()
+{
+    resetView();
+    if (parts_.session.forceIsStopped() || !parts_.notices.faults().empty()) goOn();
 }
 
 void Controls::savePicture(Shot shot)
@@ -77,6 +102,7 @@ void Controls::toggleKeySheet()
 
 void Controls::open(const std::filesystem::path& what)
 {
+    if (parts_.state.blind) return say("nothing else is opened while something is hidden: the hunt would end");
     parts_.object.request(what);
     parts_.session.resume();
     parts_.session.end();
@@ -95,6 +121,7 @@ void Controls::perform(const PanelWishes& wishes)
     if (wishes.reset) resetView();
     if (wishes.screenshot) savePicture(Shot::still);
     if (wishes.record) toggleRecording();
+    if (wishes.tool) switchTool();
     if (wishes.undo) undo();
     if (wishes.redo) redo();
     if (wishes.save) savePaint();
@@ -120,10 +147,21 @@ void Controls::paintWith(const WindowInput& input, const std::optional<Hit>& hit
     const bool paints = parts_.state.tool == Tool::paint && input.left && !input.shift && !parts_.notices.busy();
     if (!paints) return parts_.paint.endStroke(stage);
     if (!hit || (parts_.paint.inStroke() && input.moved == glm::dvec2(0))) return;
-    parts_.paint.stroke(stage, parts_.state.brush, hit->point);
+    try {
+        parts_.paint.stroke(stage, parts_.state.brush, hit->point);
+    } catch (const Error& error) { // too long a way for so small a brush
+        parts_.paint.endStroke(stage);
+        return parts_.notices.complain(error.what());
+    }
+    endRecording(kPainted);
+}
+
+/// Ends the recording, if there is one, with its session.
+void Controls::endRecording(const std::string& because)
+{
     if (!parts_.session.recorder().recording()) return;
     parts_.session.end();
-    say("the recording has ended, because its object is being painted");
+    say("the recording has ended, because " + because);
 }
 
 } // namespace palp

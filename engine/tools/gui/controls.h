@@ -36,8 +36,8 @@ public:
 
     void switchTool();
     void resizeBrush(double factor);
-    void undo() { parts_.paint.undo(parts_.object.stage()); }
-    void redo() { parts_.paint.redo(parts_.object.stage()); }
+    void undo();
+    void redo();
     void savePaint() { parts_.paint.save(parts_.object.stage()); }
 
     void letGo();
@@ -48,10 +48,8 @@ public:
     void mark() { parts_.session.mark(); }
     /// Takes the object again after a fault or letting go.
     void goOn();
-    void goOnIfHalted()
-    {
-        if (parts_.session.halted()) goOn();
-    }
+    /// Resets the view, and goes on if a fault or letting go has stopped the forces, or a fault is shown.
+    void reset();
 
     enum class Shot { still, window };
     void savePicture(Shot shot);
@@ -70,6 +68,7 @@ public:
 
 private:
     void paintWith(const WindowInput& input, const std::optional<Hit>& hit);
+    void endRecording(const std::string& because);
 
     WorkbenchParts parts_;
     ViewPaint      paintBefore_ = ViewPaint::stiffness; ///< colours shown before the brush was taken

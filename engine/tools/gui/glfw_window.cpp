@@ -22,7 +22,7 @@ std::string reason()
 }
 
 /// Returns the number of a key; 0 for keys that nothing uses.
-int keyOf(int key)
+int keyOf(int key, int scancode)
 {
     switch (key) {
     case GLFW_KEY_TAB:
@@ -53,8 +53,11 @@ int keyOf(int key)
     case GLFW_KEY_F7:
         return kF7Key;
     default:
-        return key > ' ' && key < 128 ? key : 0; // GLFW's numbers are ASCII there
+        break;
     }
+    const char* const name  = glfwGetKeyName(key, scancode);    // null if it writes nothing
+    const int         place = key > ' ' && key < 128 ? key : 0; // GLFW's numbers are ASCII there
+    return keyNumber(place, name ? name : "");
 }
 
 } // namespace
@@ -62,6 +65,7 @@ int keyOf(int key)
 struct GlfwWindow::Impl {
     GLFWwindow* window = nullptr;
     WindowInput input;             ///< collected since the last poll
+    bool        holdsH  = false;   ///< as the layout has it
     double      pressed = -1e9;    ///< when the left button went down last [s]
     glm::ivec2  pixels{}, units{}; ///< size of the picture [px], of the window as the desktop measures
     glm::dvec2  at{};              ///< the pointer, as the desktop measures
@@ -75,9 +79,13 @@ struct GlfwWindow::Impl {
 void GlfwWindow::Impl::listen()
 {
     glfwSetWindowUserPointer(window, this);
-    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int mods) {
-        if (action != GLFW_RELEASE && keyOf(key) != 0)
-            of(w).input.keys.push_back({keyOf(key), (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0});
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+        Impl&     self   = of(w);
+        const int number = keyOf(key, scancode);
+        if (number == 'H') self.holdsH = action != GLFW_RELEASE;
+        if (action != GLFW_RELEASE && number != 0)
+            self.input.keys.push_back(
+                {number, (mods & GLFW_MOD_CONTROL) != 0, (mods & GLFW_MOD_SHIFT) != 0, action == GLFW_REPEAT});
     });
     glfwSetScrollCallback(window, [](GLFWwindow* w, double, double y) { of(w).input.wheel += y; });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
@@ -124,7 +132,7 @@ void GlfwWindow::Impl::readState()
     input.right   = button(GLFW_MOUSE_BUTTON_RIGHT);
     input.middle  = button(GLFW_MOUSE_BUTTON_MIDDLE);
     input.shift   = held(GLFW_KEY_LEFT_SHIFT) || held(GLFW_KEY_RIGHT_SHIFT);
-    input.touch   = held(GLFW_KEY_SPACE) || held(GLFW_KEY_H);
+    input.touch   = held(GLFW_KEY_SPACE) || holdsH;
     input.closing = glfwWindowShouldClose(window) != 0;
 }
 

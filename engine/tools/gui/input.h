@@ -1,5 +1,6 @@
 #pragma once
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -23,9 +24,24 @@ enum SpecialKey : int {
     kF7Key
 };
 
+/// Returns the number of a key with a character by what the user's layout has written on it: Ctrl+Z is where Z is.
+/// Digits, and keys whose character is no letter or bracket, count by their place on a keyboard of the US.
+/// \param place  the number that the key has on such a keyboard
+/// \param name   what it writes without modifiers, UTF-8; empty: unknown
+constexpr int keyNumber(int place, std::string_view name) noexcept
+{
+    if (name.size() != 1 || (place >= '0' && place <= '9')) return place;
+    const char written = name.front();
+    if (written >= 'a' && written <= 'z') return written - 'a' + 'A';
+    const bool isSign    = (written > ' ' && written < 'A') || (written > 'Z' && written < 127);
+    const bool wasLetter = place >= 'A' && place <= 'Z';
+    return written == '[' || written == ']' || (isSign && wasLetter) ? written : place;
+}
+
 struct KeyPress {
     int  key     = 0; ///< 'F', '7', '[', or a SpecialKey
     bool control = false, shift = false;
+    bool repeats = false; ///< the key is held, and the desktop repeats it
 };
 
 /// The events in a window since the last picture.

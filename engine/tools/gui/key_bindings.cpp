@@ -31,7 +31,7 @@ constexpr KeyBinding kBindings[] = {
     {0, none, always, view, "wheel", "zoom", nullptr},
     {0, none, always, view, "double click", "set the pivot", nullptr},
     {'F', none, always, view, "F", "frame the object", [](Controls& c) { c.frameObject(); }, "F frame"},
-    {'R', none, always, view, "R", "reset, also a fault", [](Controls& c) { c.resetView(); c.goOnIfHalted(); }, "R reset"},
+    {'R', none, always, view, "R", "reset, also a fault", [](Controls& c) { c.reset(); }, "R reset"},
     {'O', none, always, view, "O", "orthographic", [](Controls& c) { c.state().camera = otherProjection(c.state().camera); }, "O orthographic"},
     {'1', none, always, view, "1", "along the axes", [](Controls& c) { c.lookFrom({0, -1, 0}); }},
     {'3', none, always, view, "3", nullptr, [](Controls& c) { c.lookFrom({1, 0, 0}); }},
@@ -51,14 +51,14 @@ constexpr KeyBinding kBindings[] = {
     {'K', none, always, touch, "K", "clutch of a device", [](Controls& c) { c.toggleClutch(); }},
     {'M', none, somethingHidden, touch, "M", "declare a nodule here", [](Controls& c) { c.declare(); }, "M declare"},
     {'B', none, nothingHidden, touch, "B", "paint instead of touch", [](Controls& c) { c.switchTool(); }, "B brush"},
-    {'[', none, nothingHidden, touch, "[", "size of the brush", [](Controls& c) { c.resizeBrush(0.8); }},
-    {']', none, nothingHidden, touch, "]", nullptr, [](Controls& c) { c.resizeBrush(1.25); }},
-    {'Z', control, nothingHidden, touch, "Ctrl+Z", "undo, redo", [](Controls& c) { c.undo(); }},
-    {'Y', control, nothingHidden, touch, "Ctrl+Y", nullptr, [](Controls& c) { c.redo(); }},
+    {'[', none, nothingHidden, touch, "[", "size of the brush", [](Controls& c) { c.resizeBrush(0.8); }, nullptr, true},
+    {']', none, nothingHidden, touch, "]", nullptr, [](Controls& c) { c.resizeBrush(1.25); }, nullptr, true},
+    {'Z', control, nothingHidden, touch, "Ctrl+Z", "undo, redo", [](Controls& c) { c.undo(); }, nullptr, true},
+    {'Y', control, nothingHidden, touch, "Ctrl+Y", nullptr, [](Controls& c) { c.redo(); }, nullptr, true},
     {'S', control, nothingHidden, touch, "Ctrl+S", "save what is painted", [](Controls& c) { c.savePaint(); }},
     {kF5Key, none, always, touch, "F5", "record, mark a moment", [](Controls& c) { c.toggleRecording(); }, "F5 record"},
     {kF7Key, none, always, touch, "F7", nullptr, [](Controls& c) { c.mark(); }},
-    {kF6Key, none, always, touch, "F6", "replay the last recording", [](Controls& c) { c.replayLast(); }},
+    {kF6Key, none, nothingHidden, touch, "F6", "replay the last recording", [](Controls& c) { c.replayLast(); }},
 
     {kTabKey, none, nothingHidden, program, "Tab", "panels", [](Controls& c) { flip(c.state().panels); }},
     {'T', none, always, program, "T", "texts", [](Controls& c) { flip(c.state().texts); }},
@@ -77,7 +77,7 @@ bool applies(KeyScope scope, bool hidden)
 const char* refusal(KeyScope scope)
 {
     return scope == somethingHidden ? "M declares a hidden nodule; nothing is hidden in this scene"
-                                    : "not while something is hidden: it would show where";
+                                    : "not while something is hidden: it would show where, or end the hunt";
 }
 
 const KeyBinding* bindingOf(int key, KeyModifier modifier)
@@ -98,7 +98,7 @@ void handleKey(const KeyPress& press, Controls& controls)
 {
     const KeyBinding* bound = bindingOf(press.key, press.control ? control : press.shift ? shift : none);
     if (!bound && !press.control) bound = bindingOf(press.key, none); // Shift alone changes nothing else
-    if (!bound) return;
+    if (!bound || (press.repeats && !bound->repeats)) return;
     if (!applies(bound->scope, controls.state().blind)) return controls.say(refusal(bound->scope));
     bound->act(controls);
 }

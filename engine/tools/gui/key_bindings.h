@@ -26,7 +26,8 @@ struct KeyBinding {
     const char* label; ///< "Ctrl+Z"
     const char* help;  ///< what it does; null: the binding before explains this one too
     void (*act)(Controls&);
-    const char* brief = nullptr; ///< in the line of keys of a window without panels; null: omitted there
+    const char* brief   = nullptr; ///< in the line of keys of a window without panels; null: omitted there
+    bool        repeats = false;   ///< acts again and again while the key is held
 };
 
 /// Returns all bindings. They handle keys, the sheet of keys (F1) shows them, and a test compares the README's table.

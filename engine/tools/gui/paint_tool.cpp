@@ -35,9 +35,10 @@ void PaintTool::stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3&
 {
     std::vector<glm::dvec3> path{place};
     if (lastDab_) path.insert(path.begin(), *lastDab_);
+    const std::vector<glm::dvec3> dabs = dabsAlong(path, brush.radius, stage.painted());
     stage.paint([&](StiffnessPainting& painting) {
         if (!lastDab_) painting.beginStroke();
-        for (const glm::dvec3& at : dabsAlong(path, brush.radius, stage.painted())) {
+        for (const glm::dvec3& at : dabs) {
             const Brush dab{at, brush.radius, brush.strength};
             if (brush.smooths)
                 painting.smooth(dab);
@@ -55,24 +56,28 @@ void PaintTool::endStroke(Stage& stage)
     stage.paint([](StiffnessPainting& painting) { painting.endStroke(); });
 }
 
-void PaintTool::undo(Stage& stage)
+bool PaintTool::undo(Stage& stage)
 {
-    if (notices_.busy()) return;
+    if (notices_.busy() || !stage.painting().canUndo()) return false;
     kept_ = Kept::unsaved;
     stage.paint([](StiffnessPainting& painting) { painting.undo(); });
+    return true;
 }
 
-void PaintTool::redo(Stage& stage)
+bool PaintTool::redo(Stage& stage)
 {
-    if (notices_.busy()) return;
+    if (notices_.busy() || !stage.painting().canRedo()) return false;
     kept_ = Kept::unsaved;
     stage.paint([](StiffnessPainting& painting) { painting.redo(); });
+    return true;
 }
 
 bool PaintTool::save(const Stage& stage, const std::filesystem::path& folder)
 {
     if (!stage.painting().changed()) {
-        notices_.say("nothing is painted; B takes the brush");
+        notices_.say(kept_ == Kept::saved ? "nothing is painted; B takes the brush"
+                                          : "nothing is to be saved: all strokes are undone, or painted what was there "
+                                            "before; Tab shows the brush's stiffness");
         return true;
     }
     try {

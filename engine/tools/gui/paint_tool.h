@@ -21,12 +21,14 @@ public:
     void startAnew();
 
     /// Dabs from the stroke's last place to this one; the first call begins a stroke.
+    /// \throws Error if the way is too long for the brush; nothing is painted then
     void               stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3& place);
     void               endStroke(Stage& stage);
     [[nodiscard]] bool inStroke() const { return lastDab_.has_value(); }
 
-    void undo(Stage& stage);
-    void redo(Stage& stage);
+    /// Return whether there was a stroke to undo or to paint again.
+    bool undo(Stage& stage);
+    bool redo(Stage& stage);
 
     /// Writes the painted cloud as a new PLY file, and shows its name or why it could not be written.
     /// \param folder  empty: the current one

@@ -25,8 +25,8 @@ void drawPaintSection(PanelDesk& desk)
 {
     BrushChoice& brush = desk.state.brush;
     if (const auto how = segments(desk, "how", brush.smooths ? 1 : 0, {"paint", "smooth"})) brush.smooths = *how == 1;
-    slider(desk, "radius  [ ]", "Radius of the brush; [ and ] change it", brush.radius, 1e-3, 0.2, 100, "%.1f mm",
-           true);
+    slider(desk, "radius  [ ]", "Radius of the brush; [ and ] change it", brush.radius, 1e-3,
+           1e3 * BrushChoice::kSmallest, 1e3 * BrushChoice::kLargest, "%.1f mm", true);
     ImGui::BeginDisabled(brush.smooths);
     if (desk.content.cloud.kind() == StiffnessKind::modulus)
         slider(desk, "stiffness", "Young's modulus that is painted", brush.value, 1e3, 1, 1e5, "%.0f kPa", true);

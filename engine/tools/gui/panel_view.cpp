@@ -79,8 +79,7 @@ void drawButtons(PanelDesk& desk)
 void drawTool(PanelDesk& desk)
 {
     labelled(desk, "tool", "The pointer carries a hand that touches, or a brush of stiffness (B)");
-    if (const auto tool = segments(desk, "tool", int(desk.state.tool), {"touch", "paint"}))
-        desk.state.tool = Tool(*tool);
+    if (segments(desk, "tool", int(desk.state.tool), {"touch", "paint"})) desk.wishes.tool = true;
     labelled(desk, "press depth", "Depth of the pointer's hand below the surface; the wheel sets it while touching");
     const double most = 1e3 * kDeepest * desk.content.scene.material.thickness, least = -most; // [mm]
     double       depth = 1e3 * desk.state.pressDepth;                                          // [mm]

@@ -41,6 +41,7 @@ struct PanelWishes {
     std::map<std::string, std::string, std::less<>>
          values; ///< of scene keys, as flags take them: {"thickness", "4 mm"}
     bool frame = false, reset = false, screenshot = false, record = false, undo = false, redo = false, save = false;
+    bool tool       = false; ///< changes between touch and paint
     bool resetFault = false; ///< of the governor: starts the session anew
     std::string open{};      ///< an object of those offered; empty: none
 };

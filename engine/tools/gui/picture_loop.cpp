@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <ostream>
+#include <utility>
 
 #include "engine/core/file.h"
 #include "engine/tools/gui/numbered_file.h"
@@ -65,8 +66,9 @@ void PictureLoop::show(const ViewScene& scene, const Camera& camera, const Overl
     if (size_.detail == Detail::fine) fineTime_ = drawTime_;
     restsFine_          = restsFine_ && shown && fineTime_ >= kQuick;
     const double period = Seconds(end - shownAt_).count();
-    frameTime_ += 0.1 * (period - frameTime_);
-    if (shown) count(touching, period);
+    const bool   timed  = !std::exchange(rested_, false); // or else most of the period is the rest
+    if (timed) frameTime_ += 0.1 * (period - frameTime_);
+    if (shown) count(touching && timed, period);
     shownAt_ = end;
 }
 

@@ -31,7 +31,11 @@ public:
     /// \param touching  counts it in the report
     void show(const ViewScene& scene, const Camera& camera, const Overlay* texts, bool touching);
     /// Shows the last picture once more.
-    void rest() { screen_.present(); }
+    void rest()
+    {
+        screen_.present();
+        rested_ = true;
+    }
     /// Draws words alone, and measures no times.
     void showWords(const ViewScene& words, const Camera& camera, const glm::ivec2& size, double scale);
 
@@ -60,6 +64,7 @@ private:
     PictureSize       size_;                         ///< of the picture that was begun
     double            frameTime_ = 0, drawTime_ = 0; ///< [s]
     double            fineTime_  = 0;                ///< of the last fine picture [s]; 0: there was none
+    bool              rested_    = false;            ///< since the last picture
     bool              restsFine_ = false;            ///< the last picture is a fine one, of an object at rest
     WorkbenchReport   report_;
 };

@@ -56,6 +56,12 @@ std::string wishText(const SceneKey& key, double shown)
     return text;
 }
 
+double contrastIn(const PointCloud& cloud)
+{
+    const Extremes found = extremesOf(cloud.stiffness());
+    return found.most > 1.05 * found.least ? found.most : 10 * found.least;
+}
+
 std::string lawPreset(std::string_view law, const Scene& scene, const PointCloud& cloud)
 {
     const Extremes  found    = extremesOf(cloud.stiffness());
@@ -64,7 +70,7 @@ std::string lawPreset(std::string_view law, const Scene& scene, const PointCloud
     const double    low      = isD ? material.modulus(found.least) : found.least, // [Pa]
         high                 = isD ? material.modulus(found.most) : found.most;   // [Pa]
     const glm::dvec3 place   = placeOf(scene, cloud);
-    const double     softest = low, stiffest = high > 1.05 * low ? high : 10 * low;
+    const double     softest = low, stiffest = low * contrastIn(cloud) / found.least;
     const int        length = int(law.size());
     char             text[256];
     if (law == "constant")

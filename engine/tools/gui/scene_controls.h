@@ -26,6 +26,10 @@ struct SceneControls {
 /// Returns a number in the unit of its slider as a wish or a flag writes it: "4 mm".
 [[nodiscard]] std::string wishText(const SceneKey& key, double shown);
 
+/// Returns a stiffness that is felt beside the softest of a cloud: its largest, or ten times the softest where all are
+/// nearly the same [the cloud's own kind].
+[[nodiscard]] double contrastIn(const PointCloud& cloud);
+
 /// Returns a law of stiffness to start from, from the least to the largest modulus of the cloud.
 /// \param law  constant, linear, hyperbolic or gaussian
 [[nodiscard]] std::string lawPreset(std::string_view law, const Scene& scene, const PointCloud& cloud);

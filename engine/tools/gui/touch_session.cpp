@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/core/contract.h"
+#include "engine/tools/gui/touch_faults.h"
 
 namespace palp {
 namespace {
@@ -20,7 +21,16 @@ void TouchSession::setStage(Stage& stage)
 {
     stage_ = &stage;
     pointer_.emplace(stage, notices_);
+    forgetSolver();
     resume();
+}
+
+void TouchSession::forgetSolver()
+{
+    for (Latest<std::string>* const said : {&unsolved_, &takeover_}) {
+        said->draft().clear();
+        said->publish();
+    }
 }
 
 void TouchSession::run(const ReadyHand& readyHand, const OnView& onView)
@@ -108,6 +118,11 @@ void TouchSession::resume()
     if (state_ == State::halted) state_ = State::ready;
 }
 
+bool TouchSession::forceIsStopped() const
+{
+    return halted() || governorFault(history_.newest()) != GovernorFault::none;
+}
+
 void TouchSession::startReplay(const RecordedSession& session)
 {
     replay_        = std::make_unique<ReplayDevice>(session.records, session.hand);
@@ -168,6 +183,7 @@ void TouchSession::toggleClutch()
 void TouchSession::declare()
 {
     if (!byPointer() || !pointer_) return notices_.say("the hand's own button declares");
+    if (forceIsStopped()) return notices_.say("nothing is declared, because the force is off: R goes on");
     pointer_->declare();
 }
 

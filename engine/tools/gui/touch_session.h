@@ -30,6 +30,9 @@ public:
 
     /// Takes another object, or other values of its scene: the pointer's hand begins anew over it.
     void setStage(Stage& stage);
+    /// Forgets what a solver of the plate has said; must be called once the stage has opened another one.
+    /// \pre no session runs
+    void forgetSolver();
 
     using ReadyHand = std::function<std::optional<WorkbenchHand>()>;
     using OnView    = std::function<void(const SessionView&)>;
@@ -46,8 +49,10 @@ public:
     void halt();
     void resume();
     /// Must be called before each session.
-    void                                   rearm() { ended_ = false; }
-    [[nodiscard]] bool                     halted() const { return state_ == State::halted; }
+    void               rearm() { ended_ = false; }
+    [[nodiscard]] bool halted() const { return state_ == State::halted; }
+    /// Returns whether there is no force until the user goes on: halted, or a fault of the governor.
+    [[nodiscard]] bool                     forceIsStopped() const;
     [[nodiscard]] bool                     neverRan() const { return state_ == State::neverRan; }
     [[nodiscard]] const std::atomic<bool>& givenUp() const { return ended_; } ///< \thread any
 

@@ -10,6 +10,8 @@ enum class Tool {
 
 /// The brush in the user's hand.
 struct BrushChoice {
+    static constexpr double kSmallest = 0.2e-3, kLargest = 0.1; ///< of a radius that the user chooses [m]
+
     double radius   = 5e-3;  ///< [m]
     double value    = 1e6;   ///< stiffness that is painted, in the cloud's own kind [Pa] or [N m]
     double strength = 0.5;   ///< share of the way to the value that one stroke goes, 0 to 1 [1]

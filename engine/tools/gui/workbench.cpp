@@ -14,6 +14,8 @@
 #include "engine/tools/gui/background_work.h"
 #include "engine/tools/gui/key_bindings.h"
 #include "engine/tools/gui/panel_layout.h"
+#include "engine/tools/gui/scene_controls.h"
+#include "engine/tools/gui/touch_faults.h"
 
 namespace palp {
 namespace {
@@ -158,6 +160,7 @@ void Workbench::takeValues(const SceneValues& wanted)
         const Scene scene = object_.sceneWith(values);
         if (haveSameCloud(scene, object_.stage().scene())) {
             object_.stage().change(scene);
+            session_.forgetSolver();
         } else if (paint_.mayDiscard(object_.stage())) {
             object_.adopt(meanwhile("reading " + fileNameOf(scene.cloud) + " again ...",
                                     [scene] { return std::make_unique<Stage>(scene); }));
@@ -212,8 +215,8 @@ void Workbench::useObject()
     session_.setStage(stage);
     paint_.startAnew();
     state_.pressDepth     = 0.4 * scene.material.thickness;
-    state_.brush.radius   = scene.patch.footprintRadius;
-    state_.brush.value    = *std::ranges::max_element(stage.painted().cloud().stiffness());
+    state_.brush.radius   = std::clamp(scene.patch.footprintRadius, BrushChoice::kSmallest, BrushChoice::kLargest);
+    state_.brush.value    = contrastIn(stage.painted().cloud());
     state_.look.deepest   = 0.5 * scene.material.thickness; // the limit of plate theory
     state_.look.strongest = 0.5 * scene.maxForce;
     state_.blind          = scene.overlay != nullptr;
@@ -274,7 +277,7 @@ void Workbench::frame(const SessionView* view)
 void Workbench::handle()
 {
     if (input_.closing) closing_ = true;
-    if (!input_.keys.empty() || input_.leftPressed) notices_.clearMessage();
+    if (input_.leftPressed || !std::ranges::all_of(input_.keys, &KeyPress::repeats)) notices_.clearMessage();
     if (!input_.panelsTakeKeys)
         for (const KeyPress& press : input_.keys) handleKey(press, controls_);
     for (const auto& path : input_.dropped) controls_.open(path);
@@ -336,6 +339,11 @@ void Workbench::writeTexts(const SessionView* view)
 std::string Workbench::note(const SessionView* view) const
 {
     if (!notices_.current().empty()) return notices_.current();
+    if (const GovernorFault fault = view ? governorFault(view->record) : GovernorFault::none;
+        fault != GovernorFault::none) {
+        const FaultAdvice advice = adviceOn(fault);
+        return std::string("no force: ") + advice.reason + " " + advice.remedy + " R starts anew.";
+    }
     if (!notices_.faults().empty()) return notices_.faults().back();
     if (const std::string why = session_.unsolved(); inContact(view) && !why.empty())
         return "the plate cannot be solved here: " + why;

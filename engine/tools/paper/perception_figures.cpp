@@ -1,6 +1,8 @@
 #include "engine/tools/paper/perception_figures.h"
 
+#include <algorithm>
 #include <array>
+#include <span>
 
 #include <glm/geometric.hpp>
 
@@ -11,7 +13,7 @@
 namespace palp::report {
 namespace {
 
-PlotSeries seriesOf(const std::vector<FeltTick>& ticks, const std::string& name, SeriesStyle style)
+PlotSeries seriesOf(std::span<const FeltTick> ticks, const std::string& name, SeriesStyle style)
 {
     PlotSeries series{name, {}, {}, style};
     for (const FeltTick& tick : ticks) {
@@ -19,6 +21,12 @@ PlotSeries seriesOf(const std::vector<FeltTick>& ticks, const std::string& name,
         series.y.push_back(tick.stiffness);
     }
     return series;
+}
+
+/// Returns the first half of a stroke: on the way back its dashes would fill the gaps between those of the way out.
+std::span<const FeltTick> wayOut(std::span<const FeltTick> stroke)
+{
+    return {stroke.begin(), std::ranges::max_element(stroke, {}, &FeltTick::along)};
 }
 
 } // namespace
@@ -31,8 +39,8 @@ std::string pathSvg(const ScenePerception& perception, ForceLaw law, const std::
         rest.y.push_back(place.felt(law));
     }
     const std::array<PlotSeries, 3> series{
-        rest, seriesOf(perception.stroke, "sliding to and fro", SeriesStyle::line),
-        seriesOf(perception.floor, "sliding, one stiffness everywhere", SeriesStyle::reference)};
+        seriesOf(perception.stroke, "sliding to and fro", SeriesStyle::line), // the first: a full line
+        rest, seriesOf(wayOut(perception.floor), "sliding, one stiffness everywhere", SeriesStyle::reference)};
     LinePlotSettings settings;
     settings.title = title;
     settings.x     = {"along the path", "m", Scale::linear, {}};

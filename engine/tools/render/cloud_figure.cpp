@@ -81,7 +81,7 @@ CloudBody bodyOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> n
 }
 
 /// Returns a scene without values, whose arrays are those of the arguments.
-ViewScene sceneOf(const CloudBody& body, std::span<const glm::dvec3> now, const Camera& camera)
+ViewScene sceneOf(const CloudBody& body, std::span<const glm::dvec3> now, const Camera& camera, double evenLight)
 {
     constexpr double kCue = 0.05; // of the picture's height [1]
     ViewScene        scene;
@@ -91,6 +91,7 @@ ViewScene sceneOf(const CloudBody& body, std::span<const glm::dvec3> now, const 
     scene.cores     = body.skin.cores();
     scene.oneSided  = body.oneSided;
     scene.cueRadius = kCue * 2 * camera.halfHeight();
+    scene.evenLight = evenLight;
     return scene;
 }
 
@@ -102,7 +103,7 @@ Image imageOf(std::span<const glm::dvec3> rest, std::span<const glm::dvec3> now,
     constexpr double kMark = 0.012; // of the picture's height [1]
     if (rest.empty()) throw Error("there are no points");
     const CloudBody body   = bodyOf(rest, now, NeighbourIndex(rest));
-    ViewScene       scene  = sceneOf(body, now, camera);
+    ViewScene       scene  = sceneOf(body, now, camera, figure.evenLight);
     const double    height = 2 * camera.halfHeight(); // of the picture [m]
     scene.values           = values;
     scene.colours          = {ColourMap::viridis, Scale::linear, rangeOf(values, figure), figure.quantity, figure.unit};
@@ -182,7 +183,7 @@ Image cloudPanels(const SoftObject& object, std::span<const CloudPanel> panels, 
     Image           all(kSize.width * int(panels.size()), kSize.height);
     for (std::size_t n = 0; n < panels.size(); ++n) {
         PALP_EXPECT(panels[n].values.size() == object.size(), "a panel has a value for each point");
-        ViewScene scene = sceneOf(body, object.positions(), camera);
+        ViewScene scene = sceneOf(body, object.positions(), camera, kLightOfValues);
         scene.values    = panels[n].values;
         scene.colours   = panels[n].colours;
         scene.title     = panels[n].title;
@@ -213,6 +214,7 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
     const Patch& first = *patches.front().patch;
     const bool   given = glm::length(view.direction) > 0;
     figure.title       = view.title;
+    figure.evenLight   = 0; // the dent is seen by its relief
     figure.up          = given ? glm::dvec3(0, 0, 1) : first.chart.frame.normal;
     figure.direction   = given ? view.direction : obliquely(first.chart.frame.normal);
     if (view.closeUp) figure.window = FigureWindow{first.contact.point, 0.75 * bentSize(first)};

@@ -16,16 +16,21 @@ struct FigureWindow {
     double     halfWidth = 1; ///< from the middle to the left edge [m], > 0
 };
 
+/// Share of even light in a picture that is about its values [1]: slopes are 0.85 to 1.07 times as bright as the colour
+/// in the legend. In the light of a touch they are 0.46 to 1.26 times, and a value in shade looks like a lower one.
+inline constexpr double kLightOfValues = 0.72;
+
 /// The content and direction of a figure of a cloud.
 struct CloudFigure {
     std::string                 title;
-    std::string                 quantity = "deflection";  ///< of the values
-    std::string                 unit     = "m";           ///< SI unit of the values; the legend chooses the prefix
-    std::optional<ValueRange>   range{};                  ///< ends of the colours [unit]; empty: those of the values
-    glm::dvec3                  direction{-0.5, 0.6, -1}; ///< in which the eye looks, of any length
-    glm::dvec3                  up{0, 1, 0};              ///< upwards in the figure, not parallel to the direction
-    std::optional<FigureWindow> window{};                 ///< empty: the whole cloud
-    std::vector<glm::dvec3>     marks{};                  ///< places with a dot on them [m]
+    std::string                 quantity = "deflection";    ///< of the values
+    std::string                 unit     = "m";             ///< SI unit of the values; the legend chooses the prefix
+    std::optional<ValueRange>   range{};                    ///< ends of the colours [unit]; empty: those of the values
+    glm::dvec3                  direction{-0.5, 0.6, -1};   ///< in which the eye looks, of any length
+    glm::dvec3                  up{0, 1, 0};                ///< upwards in the figure, not parallel to the direction
+    std::optional<FigureWindow> window{};                   ///< empty: the whole cloud
+    std::vector<glm::dvec3>     marks{};                    ///< places with a dot on them [m]
+    double                      evenLight = kLightOfValues; ///< see ViewScene; 0 where the shape is what matters
 };
 
 /// The renderer of figures: opened for the first one and kept for the next ones, because opening a device takes longer

@@ -113,7 +113,8 @@ shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const Pi
     frame.heightAtOne   = float(matrices.halfAtOne.y);
     frame.cueRadius     = float(scene.cueRadius);
     frame.cueGain       = scene.cueRadius > 0 ? kCueGain : 0;
-    frame.shine         = kShine;
+    frame.even          = float(scene.evenLight);
+    frame.shine         = kShine * (1 - frame.even);
     frame.hiddenShare   = kHidden;
     frame.orthographic  = camera.projection == Projection::orthographic;
     return frame;

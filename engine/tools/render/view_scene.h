@@ -73,6 +73,8 @@ struct ViewScene {
     double                     outlineRadius = 0; ///< of all lines [m]
 
     double cueRadius = 0; ///< of the surroundings in whose light hollows are darker [m]; 0: none are
+    double evenLight =
+        0; ///< share of the light that comes from everywhere alike: the more, the more colours are read [1]
 
     Ground      ground = Ground::light;
     std::string title; ///< above the picture

@@ -155,11 +155,14 @@ std::vector<AnswerSummary> analyse(const std::vector<TrialRow>& rows, const Stif
 
 std::string analysisSvg(const std::vector<AnswerSummary>& summaries)
 {
-    constexpr double  kLeft = 330, kWidth = 400, kRow = 26, kTop = 66, kSymbol = 5; // [px]
+    constexpr double  kWidth = 400, kRow = 26, kTop = 66, kSymbol = 5, kLabel = 12, kAside = 12; // [px]
     const std::string ink = hexColour(kNamedColours[0]), other = hexColour(kNamedColours[1]);
-    const auto        x   = [&](double share) { return kLeft + kWidth * share; };
-    const double      end = kTop + kRow * double(summaries.size());
-    SvgDrawing        svg;
+    const auto        labelOf = [](const AnswerSummary& s) { return s.task + ", " + s.what + ": " + shareOf(s); };
+    double            left    = 0; // of the axis, which leaves room for every label [px]
+    for (const AnswerSummary& s : summaries) left = std::max(left, textWidth(labelOf(s), kLabel) + 2 * kAside);
+    const auto   x   = [&](double share) { return left + kWidth * share; };
+    const double end = kTop + kRow * double(summaries.size());
+    SvgDrawing   svg;
     svg.text({14, 25}, "Share of answers, with 95 % intervals (Wilson)", {.size = 15, .bold = true});
     const auto dot = [&](Symbol symbol, const std::string& colour) {
         return [=](SvgDrawing& drawing, glm::dvec2 at) { drawSymbol(drawing, symbol, at, kSymbol, colour); };
@@ -174,14 +177,14 @@ std::string analysisSvg(const std::vector<AnswerSummary>& summaries)
     double y = kTop + kRow / 2;
     for (const AnswerSummary& s : summaries) {
         const Interval between = s.share.interval();
-        svg.text({kLeft - 12, y + 4}, s.task + ", " + s.what + ": " + shareOf(s), {.anchor = Anchor::end});
+        svg.text({left - kAside, y + 4}, labelOf(s), {.size = kLabel, .anchor = Anchor::end});
         svg.line({x(between.low), y}, {x(between.high), y}, {ink, 2});
         if (s.predicted) drawSymbol(svg, Symbol::diamond, {x(*s.predicted), y}, kSymbol, other);
         drawSymbol(svg, Symbol::circle, {x(s.share.value()), y}, kSymbol, ink);
         y += kRow;
     }
     svg.text({x(0.5), end + 38}, "share of trials [%]", {.size = 13, .anchor = Anchor::middle});
-    return svg.finish({kLeft + kWidth + 24, end + 52}, "Share of answers");
+    return svg.finish({left + kWidth + 24, end + 52}, "Share of answers");
 }
 
 } // namespace palp::study

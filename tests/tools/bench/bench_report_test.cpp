@@ -42,6 +42,14 @@ std::string textOf(const BenchReport& report)
     return text.str();
 }
 
+TEST(BenchReport, TheClockOfAGpuIsSaidToBeTheWalls)
+{
+    BenchReport report = reportOf(goodRow());
+    EXPECT_NE(textOf(report).find("in ms of processor time, one thread each"), std::string::npos);
+    report.clock = Clock::wall;
+    EXPECT_NE(textOf(report).find("in ms of time on the wall for Palpate"), std::string::npos) << textOf(report);
+}
+
 TEST(BenchReport, EveryRowHasEveryField)
 {
     for (const BenchRow& row : {goodRow(), BenchRow{}}) {

@@ -88,7 +88,112 @@ TEST_F(KeyBindings, WhileSomethingIsHiddenNoKeyTellsWhere)
     EXPECT_EQ(state_.look.paint, ViewPaint::plain);
     EXPECT_FALSE(state_.look.overlays.projected);
     EXPECT_EQ(state_.tool, Tool::touch);
-    EXPECT_EQ(notices_.message(), "not while something is hidden: it would show where");
+    EXPECT_EQ(notices_.message(), "not while something is hidden: it would show where, or end the hunt");
+}
+
+TEST_F(KeyBindings, WhileSomethingIsHiddenNothingElseIsOpened)
+{
+    state_.blind = true;
+    press(kF6Key);
+    EXPECT_EQ(notices_.message(), "not while something is hidden: it would show where, or end the hunt");
+    controls_.open("sample:palm");
+    EXPECT_EQ(object_.takeRequestedObject(), "");
+    EXPECT_EQ(notices_.message(), "nothing else is opened while something is hidden: the hunt would end");
+}
+
+TEST_F(KeyBindings, AKeyThatIsHeldRepeatsOnlyWhatIsDoneBySteps)
+{
+    const auto hold = [this](int key, bool control) { handleKey({key, control, false, true}, controls_); };
+    hold('S', false);
+    EXPECT_FALSE(state_.look.overlays.sphere);
+    hold(kF1Key, false);
+    EXPECT_FALSE(state_.keys);
+    const double before = state_.brush.radius;
+    hold(']', false);
+    EXPECT_GT(state_.brush.radius, before);
+    for (const KeyBinding& binding : keyBindings())
+        EXPECT_EQ(binding.repeats, binding.key == '[' || binding.key == ']' || binding.key == 'Z' || binding.key == 'Y')
+            << binding.label;
+}
+
+TEST_F(KeyBindings, TheBrushStaysWithinTheLimitsOfItsSlider)
+{
+    for (int n = 0; n < 100; ++n) press('[');
+    EXPECT_EQ(state_.brush.radius, BrushChoice::kSmallest);
+    for (int n = 0; n < 100; ++n) press(']');
+    EXPECT_EQ(state_.brush.radius, BrushChoice::kLargest);
+}
+
+TEST_F(KeyBindings, TooLongAWayForASmallBrushIsAComplaintAndEndsTheStroke)
+{
+    state_.tool         = Tool::paint;
+    state_.brush.radius = 1e-9; // a stroke over the sheet has more dabs than are painted at once
+    WindowInput input;
+    input.size = {640, 480};
+    input.left = true;
+    controls_.frameObject();
+    for (const glm::dvec2 at : {glm::dvec2(300, 240), glm::dvec2(340, 240)}) {
+        input.moved   = at - input.pointer;
+        input.pointer = at;
+        controls_.followPointer(input);
+    }
+    ASSERT_EQ(notices_.faults().size(), 1U);
+    EXPECT_NE(notices_.faults()[0].find("take a larger radius"), std::string::npos) << notices_.faults()[0];
+    EXPECT_FALSE(paint_.inStroke());
+}
+
+TEST_F(KeyBindings, WhereNothingCanBeRedoneNothingIsUnsaved)
+{
+    for (const int key : {int('Z'), int('Y')}) press(key, true);
+    EXPECT_FALSE(paint_.undo(object_.stage()));
+    press('S', true);
+    EXPECT_EQ(notices_.message(), "nothing is painted; B takes the brush");
+}
+
+TEST_F(KeyBindings, NothingIsDeclaredWhileTheForceIsOff)
+{
+    state_.blind = true;
+    session_.halt();
+    press('M');
+    EXPECT_EQ(notices_.message(), "nothing is declared, because the force is off: R goes on");
+    press('R');
+    press('M');
+    EXPECT_EQ(notices_.message(), "nothing is touched: hold Space over the place");
+}
+
+TEST_F(KeyBindings, RClearsWhatIsShownAsAFault)
+{
+    notices_.complain("a file cannot be read");
+    press('R');
+    EXPECT_TRUE(notices_.faults().empty());
+}
+
+TEST_F(KeyBindings, ThePanelsButtonIsTheBrushesKey)
+{
+    state_.look.paint = ViewPaint::deflection;
+    PanelWishes wishes;
+    wishes.tool = true;
+    controls_.perform(wishes);
+    EXPECT_EQ(state_.tool, Tool::paint);
+    EXPECT_EQ(state_.look.paint, ViewPaint::stiffness) << "the paint is visible";
+    controls_.perform(wishes);
+    EXPECT_EQ(state_.look.paint, ViewPaint::deflection);
+}
+
+TEST(KeyNumber, LettersAreWhereTheLayoutHasThem)
+{
+    EXPECT_EQ(keyNumber('Y', "z"), 'Z') << "German: Ctrl+Z undoes";
+    EXPECT_EQ(keyNumber('Z', "y"), 'Y');
+    EXPECT_EQ(keyNumber(';', "m"), 'M') << "French";
+    EXPECT_EQ(keyNumber('M', ","), ',') << "and where M is in the US declares nothing";
+    EXPECT_EQ(keyNumber('7', "\u00e8"), '7') << "digits stay";
+    EXPECT_EQ(keyNumber('1', "&"), '1');
+    EXPECT_EQ(keyNumber('[', "\u00fc"), '[') << "a key that writes neither of ours";
+    EXPECT_EQ(keyNumber(']', "+"), ']');
+    EXPECT_EQ(keyNumber('-', "["), '[');
+    EXPECT_EQ(keyNumber('Z', "\u044f"), 'Z') << "Russian";
+    EXPECT_EQ(keyNumber(0, "1"), 0) << "a key of the number pad";
+    EXPECT_EQ(keyNumber('Z', ""), 'Z');
 }
 
 TEST_F(KeyBindings, ModifiersTellBindingsApart)

@@ -86,12 +86,14 @@ public:
         state.sequence = ++sequence_;
         // From above into the object within a tenth of a second: which side it is on is known from where it comes.
         state.position = {0, 10e-3 - 11.5e-3 * std::min(1.0, now / 0.1), 0};
+        state.velocity = {0, 0, hurries ? 2.0 : 0.0};
         state.homed = state.inBox = true;
         state.fault               = DeviceFault::none;
         return state;
     }
     std::atomic<double> last = 0, most = 0,
-                        first = 0; ///< of the newest tick, of all, of the first of any session [N]
+                        first = 0;     ///< of the newest tick, of all, of the first of any session [N]
+    std::atomic<bool> hurries = false; ///< faster than the governor lets a hand be
 
 private:
     HapticDeviceInfo info_;
@@ -280,6 +282,23 @@ TEST_F(WorkbenchTest, EscapeLetsGoOfADeviceAndNeverQuits)
     EXPECT_TRUE(screen_.said_("let go")) << screen_.notes;
 }
 
+TEST_F(WorkbenchTest, AfterAFaultOfTheGovernorThereIsAForceAgainByR)
+{
+    takeHand();
+    wait("a force", [this] { return hand_.last > 0.05; });
+    step("a fast hand", [this](WindowInput&) { hand_.hurries = true; });
+    wait("no force", [this] { return hand_.last == 0; });
+    wait("why", [this] { return screen_.said_("The hand moved faster than 1.2 m/s. Hold it still"); });
+    step("a slow one", [this](WindowInput&) { hand_.hurries = false; });
+    rest(0.5);
+    step("it stays off", [this](WindowInput&) { EXPECT_EQ(hand_.last, 0); });
+    press('R');
+    wait("a force again", [this] { return hand_.last > 0.05; });
+    run();
+
+    EXPECT_TRUE(screen_.said_("R starts anew")) << screen_.notes;
+}
+
 TEST_F(WorkbenchTest, ClosingWhileADevicePressesEndsInZeroForce)
 {
     takeHand();
@@ -407,6 +426,56 @@ TEST_F(WorkbenchTest, PaintStaysFromSessionToSessionAndIsAskedForBeforeItIsLost)
     EXPECT_EQ(report.said, "") << "nothing is left to be saved";
     const LoadedCloud painted = readCloud("sheet-painted-0001.ply", {});
     EXPECT_GT(std::ranges::max(painted.cloud.stiffness()), 1.01 * std::ranges::min(painted.cloud.stiffness()));
+}
+
+TEST_F(WorkbenchTest, ARecordingEndsWhereAStrokeIsPaintedAgain)
+{
+    settings_.values["stiffness"] = kRamp;
+    record();
+    paint();
+    press('B');
+    press('Z', true);
+    press(kF5Key);
+    wait("a recording", [this] { return screen_.said_("recording session-0001"); });
+    press('Y', true);
+    wait("its end", [this] { return screen_.said_("the recording has ended, because its object is being painted"); });
+    run();
+    EXPECT_TRUE(readSession("session-0001").finished);
+}
+
+TEST_F(WorkbenchTest, TheBrushShowsOnACloudOfOneStiffness)
+{
+    settings_.values["stiffness"] = "constant:value=1e5";
+    paint();
+    rest(0.1);
+    const WorkbenchReport report = run();
+
+    ASSERT_TRUE(holds(report.said, {"saved", "sheet-painted-0001.ply"})) << report.said;
+    EXPECT_GT(std::ranges::max(readCloud("sheet-painted-0001.ply", {}).cloud.stiffness()), 1.5e5);
+}
+
+TEST_F(WorkbenchTest, PaintThatIsUndoneIsNotSaved)
+{
+    settings_.values["stiffness"] = kRamp;
+    paint();
+    press('B');
+    press('Z', true);
+    press('S', true);
+    wait("words", [this] { return screen_.said_("nothing is to be saved"); });
+    EXPECT_EQ(run().said, "");
+    EXPECT_FALSE(std::filesystem::exists("sheet-painted-0001.ply"));
+}
+
+TEST_F(WorkbenchTest, WhatIsSavedIsNotSavedAgainBecauseNothingCouldBeRedone)
+{
+    settings_.values["stiffness"] = kRamp;
+    paint();
+    press('B');
+    press('S', true);
+    wait("the paint as a file", [] { return std::filesystem::exists("sheet-painted-0001.ply"); });
+    press('Y', true);
+    EXPECT_EQ(run().said, "");
+    EXPECT_FALSE(std::filesystem::exists("sheet-painted-0002.ply"));
 }
 
 TEST_F(WorkbenchTest, PaintThatNobodySavedIsSavedWhenTheWindowCloses)

@@ -1,5 +1,6 @@
 #include "engine/tools/render/cloud_figure.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -82,6 +83,33 @@ TEST_F(CloudFigureTest, AWindowShowsItsCentreInTheMiddle)
     const Rgb8 high = right.at(450, 350), low = left.at(450, 350);
     EXPECT_GT(int(high.green), int(low.green) + 40) << "viridis goes from violet to yellow";
     EXPECT_FALSE(grey(right.at(20, 350))) << "nothing but the sheet is in the window";
+}
+
+TEST_F(CloudFigureTest, AValueLooksAlmostTheSameOnEverySlope)
+{
+    std::vector<glm::dvec3> dome; // the upper half of a ball of 50 mm
+    for (int n = 0; n < 4000; ++n) {
+        const double z = (n + 0.5) / 4000, angle = 2.399963 * n, aside = std::sqrt(1 - z * z);
+        dome.emplace_back(0.05 * aside * std::cos(angle), 0.05 * aside * std::sin(angle), 0.05 * z);
+    }
+    const std::vector<double> values(dome.size(), 1.0);
+    CloudFigure               figure = fromAbove();
+    figure.range                     = ValueRange{0, 2};
+    const auto contrast              = [&] {
+        const Image image = test::embeddedImage(figureSvg(dome, dome, values, figure));
+        int         least = 255, most = 0;
+        for (int n = 0; n < 24; ++n) { // half way down to the rim
+            const double angle  = n * 0.2618;
+            const Rgb8   colour = image.at(450 + int(200 * std::cos(angle)), 350 + int(200 * std::sin(angle)));
+            least               = std::min(least, int(colour.green));
+            most                = std::max(most, int(colour.green));
+        }
+        return double(most) / least;
+    };
+
+    EXPECT_LT(contrast(), 1.3) << "1.07 to 0.85";
+    figure.evenLight = 0;
+    EXPECT_GT(contrast(), 1.4) << "in the light that shows shapes";
 }
 
 TEST_F(CloudFigureTest, PointsWithoutAValueAreGrey)

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/perception/perception.h"
+#include "engine/tools/plot/svg.h"
 
 namespace palp::study {
 namespace {
@@ -120,6 +121,17 @@ TEST(Analysis, YesAndRightAreCountedApart)
     const std::string svg = analysisSvg(all);
     EXPECT_NE(svg.find("share of trials [%]"), std::string::npos);
     EXPECT_NE(svg.find("linear: yes"), std::string::npos);
+}
+
+TEST(Analysis, TheDrawingHasRoomForItsLongestLabel)
+{
+    TrialRow row = rowOf("p", "rating", "a", "4");
+    row.task     = "which of the two is the firmer one where the finger comes from the left, as seen by the hand";
+    const std::string svg = analysisSvg(analyse({row}, {}));
+    const auto        at  = svg.find(row.task);
+    ASSERT_NE(at, std::string::npos);
+    const auto x = svg.rfind("x=\"", at);
+    EXPECT_GT(std::stod(svg.substr(x + 3)), textWidth(row.task, 12)) << "its end; it begins inside of the drawing";
 }
 
 } // namespace
