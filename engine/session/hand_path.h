@@ -93,7 +93,7 @@ struct HandPlace {
 };
 
 /// Returns Scene::place, or the point of the cloud nearest to a viewer who looks along -z: the highest, and of
-/// a flat top, at least half as wide as the cloud both ways, the one in the middle.
+/// a flat top, nine tenths as wide as the cloud both ways at least, the one in the middle.
 [[nodiscard]] glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud);
 
 /// Returns where the scene is touched: the foot of placeOf() on the surface, see touchAt(), and the side Scene::from;
