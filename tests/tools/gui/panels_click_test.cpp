@@ -36,7 +36,7 @@ protected:
         if (!now.open.empty()) wishes_.open = now.open;
         for (bool PanelWishes::*one :
              {&PanelWishes::frame, &PanelWishes::reset, &PanelWishes::screenshot, &PanelWishes::record,
-              &PanelWishes::undo, &PanelWishes::redo, &PanelWishes::save, &PanelWishes::resetFault})
+              &PanelWishes::tool, &PanelWishes::undo, &PanelWishes::redo, &PanelWishes::save, &PanelWishes::resetFault})
             wishes_.*one |= now.*one;
     }
     void settle()
