@@ -273,6 +273,14 @@ TEST(SessionTap, AfterAPauseStreamsGetTimeZeroAnewAndARecordingKeepsIt)
     EXPECT_EQ(at<double>(marker, 32), recordNumber(2).time);
     static_cast<void>(recording.finish());
     EXPECT_EQ(readSession(folder / "run").clocks->monotonic, clockOf(first));
+
+    Recording  alone(folder / "alone", someInfo()); // nothing of it is written yet where the later clocks come
+    SessionTap early(&alone, {});
+    early.begin(start);
+    early.begin(start + 5s);
+    early.push(recordNumber(1));
+    static_cast<void>(alone.finish());
+    EXPECT_EQ(readSession(folder / "alone").clocks->monotonic, clockOf(first));
 }
 
 TEST(UdpStream, TheLinesOfPythonInThePageReadIt)

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/tools/gui/controls.h"
+#include "tests/tools/gui/blank_screen.h"
 
 // The one table of keys: what handles, explains and documents them.
 
@@ -25,19 +26,9 @@ protected:
     }
     void press(int key, bool control = false, bool shift = false) { handleKey({key, control, shift}, controls_); }
 
-    class NoScreen final : public Screen {
+    class NoScreen final : public BlankScreen {
     public:
-        bool  show(const ViewScene&, const Camera&, const PictureSize&, const Overlay*) override { return false; }
-        void  present() override {}
-        void  takePanels() override {}
-        Image draw(const ViewScene&, const Camera&, const PictureSize& size, const Overlay*) override
-        {
-            return Image(size.width, size.height, {});
-        }
-        [[nodiscard]] const compute::Processor& processor() const noexcept override { return processor_; }
-
-    private:
-        compute::Processor processor_{};
+        bool show(const ViewScene&, const Camera&, const PictureSize&, const Overlay*) override { return false; }
     };
 
     WorkbenchSettings settings_;

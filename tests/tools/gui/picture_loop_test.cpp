@@ -5,23 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/tools/gui/blank_screen.h"
+
 namespace palp {
 namespace {
 
 /// A screen that shows nothing and takes no time.
-class QuickScreen final : public Screen {
+class QuickScreen final : public BlankScreen {
 public:
-    bool  show(const ViewScene&, const Camera&, const PictureSize&, const Overlay*) override { return true; }
-    void  present() override {}
-    void  takePanels() override {}
-    Image draw(const ViewScene&, const Camera&, const PictureSize& size, const Overlay*) override
-    {
-        return Image(size.width, size.height, {});
-    }
-    [[nodiscard]] const compute::Processor& processor() const noexcept override { return processor_; }
-
-private:
-    compute::Processor processor_{};
+    bool show(const ViewScene&, const Camera&, const PictureSize&, const Overlay*) override { return true; }
 };
 
 TEST(PictureLoop, ARestIsNoTimeFromPictureToPicture)

@@ -16,6 +16,7 @@
 #include "engine/core/contract.h"
 #include "engine/tools/gui/numbered_file.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/tools/gui/blank_screen.h"
 
 // A workbench without a window: what happens in one is a list of steps, what it shows is counted.
 
@@ -26,7 +27,7 @@ constexpr glm::ivec2  kSize{640, 480};
 constexpr const char* kRamp = "linear:from=2e4,to=2e6,axis=x"; ///< the brush paints the largest value
 
 /// A screen that only remembers.
-class SeenScreen final : public Screen {
+class SeenScreen final : public BlankScreen {
 public:
     bool show(const ViewScene& scene, const Camera& now, const PictureSize&, const Overlay*) override
     {
@@ -38,13 +39,6 @@ public:
         notes += said + "\n";
         return true;
     }
-    void  present() override {}
-    void  takePanels() override {}
-    Image draw(const ViewScene&, const Camera&, const PictureSize& size, const Overlay*) override
-    {
-        return Image(size.width, size.height, {});
-    }
-    [[nodiscard]] const compute::Processor& processor() const noexcept override { return processor_; }
 
     [[nodiscard]] bool said_(const std::string& words) const { return notes.find(words) != std::string::npos; }
 
@@ -53,9 +47,6 @@ public:
     std::size_t points   = 0; ///< of what is shown
     Camera      camera;
     std::string said, notes; ///< now; all of it
-
-private:
-    compute::Processor processor_{};
 };
 
 /// A hand that stays where it is, inside of the object, and remembers what it was given.
