@@ -4,6 +4,7 @@
 #include "engine/capi/detail/border.h"
 #include "engine/core/quantity.h"
 #include "engine/plate/plate_solver.h"
+#include "engine/plate/report_text.h"
 
 // The plate alone.
 
@@ -61,10 +62,9 @@ int palpate_plate_solve(const palpate_plate* plate, const double* forces, double
         PlateSolver         solver("host");
         const PlateSolution solution = solver.solve(of, load, tolerance);
         std::ranges::copy(solution.deflection.values(), deflection);
-        const double estimate = solution.report.errorEstimate.value_or(std::numeric_limits<double>::quiet_NaN());
-        if (error) *error = estimate;
+        if (error) *error = solution.report.errorEstimate.value_or(std::numeric_limits<double>::quiet_NaN());
         if (!solution.report.converged)
-            throw Error("the plate: expected an error of at most " + formatNumber(tolerance) + ", found about " +
-                        formatNumber(estimate) + " or more, relative; take fewer cells or hold it at more sides");
+            throw Error("the plate: expected an error of at most " + formatNumber(tolerance) + ", but " +
+                        errorText(solution.report) + "; take fewer cells or hold it at more sides");
     });
 }

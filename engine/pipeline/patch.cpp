@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
-#include "engine/core/quantity.h"
 #include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/whole_object.h"
+#include "engine/pipeline/patch_warnings.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -106,9 +106,7 @@ void demandDeformed(const Patch& patch, const char* hint)
 void demandConverged(const Patch& patch)
 {
     if (patch.report.converged) return;
-    throw Error(placeText(patch.contact) + ": the plate's solution is not as good as asked for: its error is about " +
-                formatNumber(patch.report.errorEstimate.value_or(1)) +
-                " or more, relative; try fewer cells or less contrast");
+    throw Error(placeText(patch.contact) + ": " + unconvergedText(patch));
 }
 
 std::string directionText(const glm::dvec3& direction)

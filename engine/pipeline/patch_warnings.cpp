@@ -11,6 +11,7 @@
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/dent_length.h"
+#include "engine/plate/report_text.h"
 
 namespace palp {
 namespace {
@@ -170,15 +171,18 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, double dee
 
 } // namespace
 
+std::string unconvergedText(const Patch& patch)
+{
+    return "the plate's solution is not as good as asked for: " + errorText(patch.report) +
+           "; try fewer cells or less contrast";
+}
+
 std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force,
                                   const Material& material)
 {
     std::vector<std::string> result;
     if (!patch.deformed()) return result;
-    if (!patch.report.converged)
-        result.push_back("the plate's solution is not as good as asked for: its error is about " +
-                         formatNumber(patch.report.errorEstimate.value_or(1)) +
-                         " or more, relative; try fewer cells or less contrast");
+    if (!patch.report.converged) result.push_back(unconvergedText(patch));
     const double load    = pressOf(patch, material, std::abs(force)).load;
     const double deepest = load * mostResponse(patch);
     addTooDeep(result, patch, deepest, load);

@@ -14,4 +14,8 @@ namespace palp {
 [[nodiscard]] std::vector<std::string> warnings(const Patch& patch, const PatchSettings& settings, double force,
                                                 const Material& material);
 
+/// Returns the one of them about a plate that was not solved as well as asked for.
+/// \pre !patch.report.converged
+[[nodiscard]] std::string unconvergedText(const Patch& patch);
+
 } // namespace palp

@@ -8,8 +8,8 @@
 
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
-#include "engine/core/quantity.h"
 #include "engine/plate/load.h"
+#include "engine/plate/report_text.h"
 #include "engine/plate/shell_energy.h"
 
 namespace palp {
@@ -130,8 +130,7 @@ private:
     static void demandConverged(const SolveReport& report)
     {
         if (!report.converged)
-            throw Error("the shapes of deep dents are not solved as well as asked for: an error of " +
-                        formatNumber(report.errorEstimate.value_or(1)) + " or more, relative");
+            throw Error("a shape of deep dents is not solved as well as asked for: " + errorText(report));
     }
 
     const Shell& shell_;

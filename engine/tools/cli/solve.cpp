@@ -15,6 +15,7 @@
 #include "engine/core/quantity.h"
 #include "engine/plate/load.h"
 #include "engine/plate/problem_file.h"
+#include "engine/plate/report_text.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/solver_choice.h"
@@ -67,8 +68,7 @@ Solved solved(const SolveOptions& options)
     sayTakeover(solver.takeoverSince(told, s.solution.report.solver));
     if (const SolveReport& report = s.solution.report; !report.converged)
         s.problem.warnings.push_back(
-            "the solution misses --tolerance: its error is about " + formatNumber(*report.errorEstimate) +
-            " or more, relative; try fewer cells" +
+            "the solution misses --tolerance: " + errorText(report) + "; try fewer cells" +
             (report.solver == PlateSolver::kReference ? " or less contrast" : ", less contrast or --solver reference"));
     warn(s.problem.warnings);
     // With one plate and one load, the time of the answer includes the preparation.
