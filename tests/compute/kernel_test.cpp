@@ -99,6 +99,15 @@ TEST_F(KernelTest, WhatTheDeviceDoesNotAllowIsRefusedBeforeTheDriverSeesIt)
     greedy         = kSmooth;
     greedy.buffers = 1 << 30;
     EXPECT_TRUE(holds(refusal(greedy, {8, 8, 1}), {"plane_smooth", "buffers"}));
+    compute::ContextSettings settings;
+    settings.processor    = processorOfTests();
+    settings.most.buffers = std::uint32_t(kSmooth.buffers) - 1;
+    compute::Context small(settings);
+    EXPECT_TRUE(holds(refusalOf([&] {
+                          const compute::Kernel kernel(small, kSmooth, {8, 8, 1});
+                      }),
+                      {"plane_smooth", "buffers"}))
+        << "a processor that is used as if it were a smaller one";
 }
 
 // The fixture itself: a test that cannot fail is worth nothing.

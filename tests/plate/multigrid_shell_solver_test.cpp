@@ -259,6 +259,34 @@ TEST(MultigridShellSolver, GoesOnWithAnotherShellAsIfItWereNew)
     EXPECT_EQ(solver.solve({&load, 1}, 1e-4).front().work, solved(one, load, 1e-4).work) << "the shell before stays";
 }
 
+/// A grid of 16 cells a side or fewer is its own coarsest level, whose answer is written at the unknowns alone.
+TEST(MultigridShellSolver, GoesOnWithOtherEdgesOfASmallGridAsIfItWereNew)
+{
+    using enum Edge;
+    for (const int cells : {10, 16, 17}) {
+        const Shell held = shellOf(square(cells), wart(10), constant(1, 0.3, 0), 4);
+        Shell       open = held, otherwise = held;
+        open.bending.edges.z0      = free;
+        open.stressEdges.z0        = clamped;
+        otherwise.bending.edges.z1 = free;
+        otherwise.stressEdges.z1   = clamped;
+        const NodeField load       = fingertip(held.bending.grid, 0, -12e-3);
+        for (const Shell& first : {held, open, otherwise})
+            for (const Shell& then : {held, open, otherwise}) {
+                MultigridShellSolver solver(first);
+                for (const int loads : {1, 3}) {
+                    const std::vector<NodeField> all(std::size_t(loads), load);
+                    (void)solver.solve(all, 1e-4);
+                    solver.setShell(then);
+                    EXPECT_EQ(solver.solve(all, 1e-4).front().deflection.values(),
+                              MultigridShellSolver(then).solve(all, 1e-4).front().deflection.values())
+                        << cells << " cells, " << loads << " loads";
+                    solver.setShell(first);
+                }
+            }
+    }
+}
+
 TEST(MultigridShellSolver, ReportsWhatIsMissing)
 {
     const Shell       shell = shellOf(square(64), disc(100), constant(1, 1, 0), 12);

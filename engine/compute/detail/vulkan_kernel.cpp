@@ -18,9 +18,9 @@ void refuseWhatDoesNotFit(const VulkanContext& gpu, const KernelCode& code, Work
         throw Error(who + "wants a workgroup of " + std::to_string(workgroup.x) + "x" + std::to_string(workgroup.y) +
                     "x" + std::to_string(workgroup.z) + ", more" + limit + std::to_string(gpu.limits.invocations) +
                     " in all)");
-    if (std::uint32_t(code.buffers) > limits.maxPerStageDescriptorStorageBuffers)
+    if (std::uint32_t(code.buffers) > gpu.limits.buffers)
         throw Error(who + "wants " + std::to_string(code.buffers) + " buffers, more" + limit +
-                    std::to_string(limits.maxPerStageDescriptorStorageBuffers) + ")");
+                    std::to_string(gpu.limits.buffers) + ")");
     if (std::uint32_t(code.pushBytes) > limits.maxPushConstantsSize)
         throw Error(who + "wants " + std::to_string(code.pushBytes) + " bytes of push constants, more" + limit +
                     std::to_string(limits.maxPushConstantsSize) + ")");

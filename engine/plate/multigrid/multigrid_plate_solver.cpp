@@ -447,9 +447,12 @@ struct MultigridPlateSolver::Impl {
     /// Takes steps for the loads that were uploaded, until the estimate is small enough.
     [[nodiscard]] SolveReport iterate(Clock::time_point began)
     {
-        constexpr int         kBeyond = 2; // steps that are tried where it takes more than the last solve did
-        CommandList*          list    = &run(&Lists::begin, &Impl::recordBegin, lastSteps);
-        int                   done    = int(worst(shared::kStateSteps));
+        constexpr int kBeyond = 2; // steps that are tried where it takes more than the last solve did
+        // Where the rigidity jumps a first step is not judged, see takeGradientSteps(): a list that ends with it would be,
+        // by the host.
+        const int             least = jumps == Jumps::none ? 1 : 2;
+        CommandList*          list  = &run(&Lists::begin, &Impl::recordBegin, std::max(lastSteps, least));
+        int                   done  = int(worst(shared::kStateSteps));
         std::optional<double> processorMilliseconds = 0;
         for (;;) {
             const auto times = list->timestampsMilliseconds();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "engine/compute/context.h"
 #include "engine/core/contract.h"
@@ -37,20 +38,21 @@ struct MultigridShellSolver::Impl {
     {
         const auto   began    = std::chrono::steady_clock::now();
         const double rigidity = geometricMean(shell.bending.rigidity.values());
-        const bool   sameGrid = shell.bending.grid == grid;
-        grid                  = shell.bending.grid;
+        const bool   sameGrid = std::exchange(grid, shell.bending.grid) == shell.bending.grid;
         stiffness             = rigidity / (grid.spacingX * grid.spacingZ);
         phiUnit               = std::sqrt(rigidity / geometricMean(shell.membraneCompliance.values()));
         makeLevels(shell, *host.kernels, levels);
+        const std::vector<std::ptrdiff_t> before(coarse.places().begin(), coarse.places().end());
         coarse.factorise(levels.back(), *host.kernels);
-        if (!sameGrid) {
+        // The coarsest level's answer is written where there are unknowns: elsewhere its vectors keep what they were made of.
+        if (!(sameGrid && std::ranges::equal(before, coarse.places()))) {
             alone.reset();
             together.reset();
+            single.reset();
+            many.reset();
         }
-        for (By<ProcessorShellFields>* by : {&single, &many}) {
-            if (*by && !(sameGrid && (*by)->fits(coarse))) by->reset();
+        for (const By<ProcessorShellFields>* by : {&single, &many})
             if (*by) (*by)->setLevels(coarse);
-        }
         setUpMilliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - began).count();
     }
 

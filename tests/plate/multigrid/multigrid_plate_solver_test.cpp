@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
 #include "engine/plate/multigrid/detail/plate_kernels.h"
@@ -880,6 +881,41 @@ TEST_F(MultigridPlate, AnotherRigidityIsAsIfTheSolverWereNew)
     solver.setRigidity(stiff.rigidity);
     EXPECT_LT(errorOf(solver.solve(load).deflection, ReferencePlateSolver(stiff).solve(load).deflection),
               allowed(1e-6));
+}
+
+/// A first step where the rigidity jumps is not judged, whatever the plate before took.
+TEST_F(MultigridPlate, WhereItJumpsAFirstStepIsNeverTheLastWhicheverPlateCameBefore)
+{
+    if (onHost()) GTEST_SKIP() << "there a list always has four steps";
+    if (watched()) GTEST_SKIP() << "time";
+    const PlateKernels                   fused(context(), Schedule::fused);
+    const MultigridPlateSolver::Settings loose{.tolerance = 0.1};
+    Plate                plate = plateOf(64, 64, {Edge::clamped, Edge::free, Edge::free, Edge::free}, kLaws[0]);
+    const NodeField      even = plate.rigidity, load = loadOn(plate.grid);
+    MultigridPlateSolver kept(context(), fused, plate, loose);
+    for (const double contrast : {4.0, 10.0}) {
+        kept.setRigidity(even);
+        ASSERT_EQ(kept.solve(load).report.iterations, 1) << "the test is of no use";
+        for (int i = 0; i <= 64; ++i)
+            for (int j = 0; j <= 64; ++j)
+                plate.rigidity(i, j) = even(i, j) * (std::hypot(i - 38.4, j - 38.4) < 3.2 ? contrast : 1);
+        kept.setRigidity(plate.rigidity);
+        const PlateSolution found = kept.solve(load),
+                            fresh = MultigridPlateSolver(context(), fused, plate, loose).solve(load);
+        EXPECT_GE(fresh.report.iterations, 2);
+        EXPECT_EQ(found.report.iterations, fresh.report.iterations) << contrast;
+        EXPECT_EQ(found.deflection.values(), fresh.deflection.values()) << contrast;
+    }
+}
+
+/// All rows of nodes and tiles are workgroups of one dispatch there, of which every processor takes 65535.
+TEST_F(MultigridPlate, AStripThatIsTooLongForTheProcessorIsTheHosts)
+{
+    if (onHost()) GTEST_SKIP() << "it has no dispatches";
+    const PlateKernels fused(context(), Schedule::fused);
+    EXPECT_THROW(MultigridPlateSolver(context(), fused, plateOf(40000, 4, {}, kLaws[0]), {}),
+                 compute::ProcessorOutOfMemory);
+    EXPECT_NO_THROW(MultigridPlateSolver(context(), fused, plateOf(20000, 4, {}, kLaws[0]), {}));
 }
 
 /// Each rigidity has other tiles with a jump, so that everything is recorded anew; first a small disc, at last one that

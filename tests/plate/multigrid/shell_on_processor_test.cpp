@@ -153,6 +153,22 @@ TEST_F(ShellOnProcessor, GoesOnWithAnotherShellAndOtherEdges)
     }
 }
 
+/// As many unknowns elsewhere: on so small a grid the finest level is the coarsest one.
+TEST_F(ShellOnProcessor, GoesOnWithAsManyUnknownsElsewhere)
+{
+    using enum Edge;
+    Shell first = shellOf(square(12), wart(10), constant(1, 0.3, 0), 4), next = first;
+    first.bending.edges.z0    = free;
+    first.stressEdges.z0      = clamped;
+    next.bending.edges.z1     = free;
+    next.stressEdges.z1       = clamped;
+    const NodeField      load = fingertip(first.bending.grid, 0, -12e-3);
+    MultigridShellSolver solver(first, *context_, *kernels_);
+    (void)solver.solve({&load, 1}, 1e-6);
+    solver.setShell(next);
+    expectTheHosts(solver.solve({&load, 1}, 1e-6), next, {&load, 1}, "the free side is the other one");
+}
+
 TEST_F(ShellOnProcessor, IsTheReference)
 {
     const PlateGrid grid  = square(40);

@@ -10,6 +10,7 @@
 #include "compute_shaders/shared/region_layout.h"
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/compute/context.h"
+#include "engine/compute/processor_error.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -61,6 +62,20 @@ int rimOfUp(int sweeps)
     return shared::kRimPerSweep * sweeps;
 }
 
+/// \throws compute::ProcessorOutOfMemory if a dispatch over all rows would have more workgroups than every processor takes:
+///         the host has none, and takes over
+void checkLength(const compute::Context& context, const PlateKernels::All& k, const RigidityLayout& layout)
+{
+    constexpr std::uint32_t kMostGroups = 65535; // along y of a dispatch, on every processor
+    if (context.processor().kind == compute::ProcessorKind::host) return;
+    const auto          rows   = std::uint32_t(layout.levels.front().plate.cellsX + 1);
+    const std::uint32_t groups = k.fused ? layout.rows + layout.tileRows : rows;
+    if (groups > kMostGroups)
+        throw compute::ProcessorOutOfMemory("a plate of " + std::to_string(rows) +
+                                            " rows of nodes is longer than the GPU " + context.processor().name +
+                                            " takes");
+}
+
 std::uint32_t partialsFor(std::size_t nodes)
 {
     return std::uint32_t(std::clamp<std::size_t>(nodes / kTermsPerSum, kTermsPerSum, kMostPartials));
@@ -82,6 +97,7 @@ PlatePasses::PlatePasses(compute::Context& context, const PlateKernels::All& ker
       hostArguments_(context, "groups from the host", argumentBytes(), Intent::upload),
       hostTiles_(context, "numbers of tiles for the host", 4 * grids_.levels.size(), Intent::readback)
 {
+    checkLength(context, k, layout_);
     gradients_ = makeGradients();
     levels     = makeLevels();
     if (k.smoothing.by == Smoother::redBlack) zeroes_.emplace(floats("zeroes", fieldSize(0)));

@@ -141,11 +141,6 @@ ProcessorShellFields::Level ProcessorShellFields::makeLevel(const ShellLevel& le
             memory("guess", field)};
 }
 
-bool ProcessorShellFields::fits(const ShellCoarseSolver& coarse) const noexcept
-{
-    return band_.unknowns == coarse.places().size() && band_.halfBand == unsigned(coarse.halfBand());
-}
-
 /// Calls visit(buffer, memory, bytes) for all that belongs to a shell.
 template <class Visit>
 void ProcessorShellFields::eachUpload(const ShellCoarseSolver& coarse, const Visit& visit) const
@@ -164,7 +159,8 @@ void ProcessorShellFields::eachUpload(const ShellCoarseSolver& coarse, const Vis
 
 void ProcessorShellFields::setLevels(const ShellCoarseSolver& coarse)
 {
-    PALP_EXPECT(fits(coarse), "another coarsest level than the memory is for");
+    PALP_EXPECT(band_.unknowns == coarse.places().size() && band_.halfBand == unsigned(coarse.halfBand()),
+                "another coarsest level than the memory is for");
     auto* to = static_cast<std::byte*>(staging_.mapped());
     eachUpload(coarse, [&](const Buffer&, const void* from, std::size_t bytes) {
         std::memcpy(to, from, bytes);

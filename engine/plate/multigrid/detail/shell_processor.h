@@ -37,10 +37,8 @@ public:
     ProcessorShellFields(compute::Context& context, const ShellKernels::All& kernels,
                          const std::vector<ShellLevel>& levels, const ShellCoarseSolver& coarse, std::size_t loads);
 
-    /// Returns whether the memory fits the levels of another shell on the same grid.
-    [[nodiscard]] bool fits(const ShellCoarseSolver& coarse) const noexcept;
-    /// Copies the coefficients of the levels, which must be those that it was made with.
-    /// \pre fits(coarse)
+    /// Copies the coefficients of the levels, which must be those that it was made with; of another shell if its grid and
+    /// the unknowns of the coarsest level are the same.
     void setLevels(const ShellCoarseSolver& coarse);
 
     /// As those of HostShellFields.
