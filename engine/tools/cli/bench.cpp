@@ -233,7 +233,10 @@ void addBenchCommand(CLI::App& app)
         "  palpate bench --quick\n"
         "  palpate bench --out bench\n"
         "  palpate bench --cases new_map,new_load --nodes 129,257 --json");
-    bench->callback([o] { runBench(*o); });
+    bench->callback([o] {
+        demandFolder("--out", o->out);
+        runBench(*o);
+    });
 }
 
 } // namespace palp

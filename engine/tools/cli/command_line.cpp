@@ -32,6 +32,11 @@ void demandSvg(const std::string& option, const std::string& file)
         throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
 }
 
+void demandFolder(const std::string& option, const std::string& folder)
+{
+    if (folder == "-") throw Error(option + ": expected a folder, found \"-\"; --json prints to standard output");
+}
+
 void demandOwner(const CLI::App& command, const std::string& owner, std::initializer_list<const char*> options)
 {
     if (command.get_option(owner)->count() > 0) return;

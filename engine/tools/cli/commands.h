@@ -54,6 +54,10 @@ void say(const std::vector<std::string>& sentences);
 /// \throws Error unless the file's name ends in .svg, or is empty: no picture
 void demandSvg(const std::string& option, const std::string& file);
 
+/// Refuses the name that stands for standard output, where a folder would be made of that name.
+/// \param option  opens the complaint
+void demandFolder(const std::string& option, const std::string& folder);
+
 /// Refuses options that have an effect only beside another one, which is not given.
 /// \param owner  the other one, as "--frames"
 /// \throws Error naming both

@@ -44,6 +44,8 @@ SimulatedHand gripOf(const std::string& text)
 /// Refuses the options of generated hands for another hand, on which they would have no effect.
 void demandGenerated(const HandOptions& o)
 {
+    if (valueNamed<HandMotion>(o.hand) == HandMotion::press && !o.reach.empty())
+        throw Error("--reach belongs to the hands circle and scan, found --hand press; omit one of the two");
     const DeviceRecord* record = deviceNamed(o.hand);
     if (record ? record->holder == DeviceHolder::scriptedHand : valueNamed<HandMotion>(o.hand).has_value()) return;
     for (const auto& [option, text] :

@@ -118,6 +118,7 @@ void paper(const PaperOptions& o)
         static_cast<void>(openForReading(o.bunny)); // before minutes of work
         std::cerr << bunnyTerms() << "\n";
     }
+    demandFolder("--out", o.out);
     makeFolder(o.out);
     std::vector<Section> sections;
     FigureRenderer       renderer;

@@ -148,6 +148,7 @@ std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionPar
                                        const std::string& solver)
 {
     if (o.record.empty()) return nullptr;
+    demandFolder("--record", o.record);
     SessionInfo info;
     info.scene    = parts.scene;
     info.versions = {{"palpate", PALPATE_VERSION}, {"compiler", __VERSION__}, {"libraries", PALPATE_LIBRARIES}};

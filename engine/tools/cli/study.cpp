@@ -30,6 +30,7 @@ void study_(const StudyOptions& o, bool handGiven)
     const study::StudyPlan plan = study::readPlan(o.run.plan);
     if (o.order) return printOrder(plan, o.run.participant, o.run.json);
     if (o.out.empty()) throw Error("--out: expected a folder for the study, found none");
+    demandFolder("--out", o.out);
     StudyRun run             = o.run;
     run.out                  = o.out;
     run.session.hand.seconds = std::to_string(plan.seconds);
@@ -74,6 +75,7 @@ void addStudyCommand(CLI::App& app)
     command->callback([command, hand, o] {
         o->run.session.command = commandOf(*command);
         allowOnlyWith(*command, "--analyse", {"--plot", "--json"});
+        allowOnlyWith(*command, "--order", {"PLAN", "--participant", "--json"});
         demandOwner(*command, "--analyse", {"--plot"});
         study_(*o, hand->count() > 0);
     });

@@ -57,8 +57,7 @@ std::vector<std::string> fileNames()
 void demandTarget(const TouchOptions& options, const Scene& scene)
 {
     if (options.out.empty()) return;
-    if (options.out == "-")
-        throw Error("--out: expected a folder, found \"-\"; --json without --out writes to standard output");
+    demandFolder("--out", options.out);
     std::vector<std::string> sources = filesOfLaws(scene);
     sources.insert(sources.end(), {options.source.name, scene.cloud});
     for (const std::string& name : fileNames())

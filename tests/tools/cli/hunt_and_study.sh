@@ -178,6 +178,7 @@ good 'a hand in the air' study plan.json --participant P05 --out air --clock vir
 grep -q 'trial 1: nothing was felt' err.txt && pass || complain "nobody says that nothing was felt: $(cat err.txt)"
 : >input
 bad 'nothing that was felt' '1 trial left out, because nothing was felt' study --analyse air
+bad 'a folder of an order' '--out has no effect with --order' study plan.json --participant P01 --order --out study
 bad 'a clock of an analysis' '--clock has no effect with --analyse' study --analyse study --clock virtual
 bad 'a long name' 'at most 64 characters, found 101' study plan.json --participant "$(printf '%100s' | tr ' ' P)1" --out study
 mkdir plans # one touch of a pair is in the air, and so is one of the ratings
