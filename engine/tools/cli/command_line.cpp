@@ -34,7 +34,9 @@ void demandSvg(const std::string& option, const std::string& file)
 
 void demandFolder(const std::string& option, const std::string& folder)
 {
-    if (folder == "-") throw Error(option + ": expected a folder, found \"-\"; --json prints to standard output");
+    if (folder == "-")
+        throw Error(option + ": expected a folder, found \"-\"; --json without " + option +
+                    " writes to standard output");
 }
 
 void demandOwner(const CLI::App& command, const std::string& owner, std::initializer_list<const char*> options)
