@@ -10,6 +10,7 @@
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "device/vendor/detail/drd_device.h"
 #include "device/vendor/detail/drd_library.h"
 #include "engine/core/contract.h"
 
@@ -24,15 +25,7 @@ constexpr double kMostForce = 12;  ///< [N] that the library lets through, beyon
 constexpr int    kSame      = 1;   ///< of a read: the sample is that of the last read (TIMEGUARD)
 constexpr double kSettle    = 0.1; ///< [s] at zero force before the first sample
 
-enum Status : std::size_t {
-    kPower     = 0,
-    kConnected = 1,
-    kStarted   = 2,
-    kReset     = 3,
-    kBrake     = 6,
-    kError     = 9,
-    kForceOff  = 14
-};
+enum Status : std::size_t { kPower = 0, kConnected = 1, kStarted = 2, kBrake = 6, kError = 9, kForceOff = 14 };
 
 /// Why the device itself has switched the force off, by its status.
 const char* reasonOf(int cause) noexcept
@@ -56,7 +49,7 @@ const char* reasonOf(int cause) noexcept
 }
 
 /// Returns why the device makes no force, by all its status; an empty text if it can.
-const char* reasonOf(const std::array<int, kDrdStatus>& status) noexcept
+const char* reasonOf(const DrdStatus& status) noexcept
 {
     if (status[kPower] == 0) return "the device has no power; see its supply";
     if (status[kError] != 0) return "the device reports an error; switch it off and on again";
@@ -136,9 +129,9 @@ private:
 
     ForceDimensionSettings            settings_;
     std::unique_ptr<const DrdLibrary> drd_;
-    int                               id_     = -1; ///< -1: closed
-    int                               errors_ = 0;  ///< calls in a row
-    int                               off_    = 0;  ///< exchanges at zero force since the device switched it off
+    DrdDevice                         device_;
+    int                               errors_ = 0; ///< calls in a row
+    int                               off_    = 0; ///< exchanges at zero force since the device switched it off
 };
 
 void ForceDimensionLine::refuse(const std::string& what)
@@ -162,9 +155,9 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
         throw Error("Force Dimension: device number " + std::to_string(settings_.index) + " was asked for, and " +
                     std::to_string(std::max(0, count)) +
                     " are plugged in; switch it on, and see that a udev rule for vendor 1451 lets you open it");
-    id_ = drd_->dhdOpenID(char(settings_.index));
-    if (id_ < 0) refuse("device number " + std::to_string(settings_.index) + " cannot be opened");
-    const auto        id    = char(id_);
+    device_ = openDrd(*drd_, settings_.index);
+    if (device_.id < 0) refuse("device number " + std::to_string(settings_.index) + " cannot be opened");
+    const auto        id    = char(device_.id);
     const char* const name  = drd_->dhdGetSystemName(id);
     const bool        isSim = info.isSimulation;
     const int         type  = drd_->dhdGetSystemType(id);
@@ -179,7 +172,7 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
     if (drd_->dhdGetSerialNumber(&serial, id) >= 0) info.serial = std::to_string(serial);
     info.hasGripper = info.hasGripper && drd_->dhdGetGripperAngleRad;
 
-    if (!drd_->drdIsInitialized(id) && settings_.mayInitialise) {
+    if (settings_.mayInitialise && device_.isRobot && !isHomed(*drd_, device_)) {
         if (drd_->drdAutoInit(id) < 0) refuse("the arm did not find its stops");
         drd_->drdStop(true, id); // ends the movement, keeps the motors
     }
@@ -194,14 +187,14 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
 bool ForceDimensionLine::render(const glm::dvec3& force) noexcept
 {
     const glm::dvec3 f      = toTheirs(force);
-    const int        result = drd_->dhdSetForceAndTorqueAndGripperForce(f.x, f.y, f.z, 0, 0, 0, 0, char(id_));
+    const int        result = drd_->dhdSetForceAndTorqueAndGripperForce(f.x, f.y, f.z, 0, 0, 0, 0, char(device_.id));
     return result >= 0; // 2: the motors are saturated and give less
 }
 
 /// \return 0: a new sample; 1: the same again; below 0: an error
 int ForceDimensionLine::readHand(LineSample& sample) noexcept
 {
-    const auto id = char(id_);
+    const auto id = char(device_.id);
     glm::dvec3 place{}, speed{};
     double     turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     double     angle      = 0;
@@ -222,8 +215,8 @@ int ForceDimensionLine::readHand(LineSample& sample) noexcept
 /// \return false if it says nothing
 bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) noexcept
 {
-    const auto                  id = char(id_);
-    std::array<int, kDrdStatus> status{};
+    const auto id = char(device_.id);
+    DrdStatus  status{};
     status[kPower] = status[kConnected] = 1;
     if (drd_->dhdGetStatus(status.data(), id) < 0) return false;
     if (status[kConnected] == 0) {
@@ -231,7 +224,7 @@ bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) 
         sample.words = "the device was unplugged or switched off";
         return true;
     }
-    sample.homed      = status[kReset] == 0 && drd_->drdIsInitialized(id);
+    sample.homed      = isHomed(*drd_, device_, status);
     sample.words      = reasonOf(status);
     sample.fault      = *sample.words ? DeviceFault::ownWatchdog : DeviceFault::none;
     const bool mayTry = sample.fault != DeviceFault::none && !isWanted(status[kForceOff]) && !order.enable;
@@ -245,7 +238,7 @@ bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) 
 
 void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) noexcept
 {
-    if (id_ < 0) return;
+    if (device_.id < 0) return;
     const bool isTaken = render(order.force);
     const int  isRead  = readHand(sample);
     sample.news        = isRead == 0 ? LineNews::sample : LineNews::none;
@@ -253,18 +246,17 @@ void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) no
     errors_            = isTaken && isRead >= 0 && isTold ? 0 : errors_ + 1;
     if (errors_ <= settings_.mostErrors || isFinal(sample.fault)) return;
     static_cast<void>(render({})); // the device may still hear
-    drd_->dhdStop(char(id_));
+    drd_->dhdStop(char(device_.id));
     sample.fault = DeviceFault::linkLost;
     sample.words = "each call of Force Dimension's library fails; see its cable, and plug it in again";
 }
 
 void ForceDimensionLine::close() noexcept
 {
-    if (id_ < 0) return;
+    if (device_.id < 0) return;
     static_cast<void>(render({}));
-    drd_->dhdStop(char(id_));
-    drd_->dhdClose(char(id_));
-    id_ = -1;
+    drd_->dhdStop(char(device_.id));
+    closeDrd(*drd_, device_);
 }
 
 // --- the record
@@ -280,16 +272,16 @@ std::vector<DeviceListing> list(HidSystem& /*hid*/)
     std::vector<DeviceListing> devices;
     for (int n = 0; n < drd->dhdGetDeviceCount(); ++n) {
         DeviceListing listing{.path = std::to_string(n)};
-        if (const int id = drd->dhdOpenID(char(n)); id >= 0) {
-            const char* name = drd->dhdGetSystemName(char(id));
+        if (DrdDevice device = openDrd(*drd, n); device.id >= 0) {
+            const char* name = drd->dhdGetSystemName(char(device.id));
             listing.model    = std::string("Force Dimension ") + (name ? name : "device");
             listing.usable   = true;
             listing.answers  = true;
-            if (!drd->drdIsInitialized(char(id))) {
+            if (!isHomed(*drd, device)) {
                 listing.why  = "it has not been reset";
                 listing.help = "press its RESET button, or use " + std::string(kForceDimensionInit.flag);
             }
-            drd->dhdClose(char(id));
+            closeDrd(*drd, device);
         } else {
             const char* why = drd->dhdErrorGetLastStr();
             listing.model   = "Force Dimension device";

@@ -43,7 +43,8 @@ FakeSdk& registersOf(const std::string& library)
     for (int axis = 0; axis < 3; ++axis) sdk.position[axis] = sdk.velocity[axis] = sdk.force[axis] = 0;
     sdk.isPresent = sdk.isReady = true;
     sdk.type                    = 33;
-    sdk.hasPower                = true;
+    sdk.hasPower = sdk.knowsDrd = true;
+    sdk.isRobot                 = false;
     sdk.isBroken = sdk.isLost = false;
     sdk.isForceOn = sdk.isSame = sdk.isOutOfNumbers = sdk.callsLate = false;
     sdk.error = sdk.status = sdk.opened = sdk.closed = sdk.enabled = sdk.calibrated = sdk.calls = sdk.lateCallbacks =
@@ -381,6 +382,21 @@ TEST_P(ForceDimension, TheArmMovesByItselfOnlyIfTheUserLetsIt)
                     {.pace = LinePace::caller});
     free.open();
     EXPECT_EQ(sdk.calibrated, 1);
+}
+
+TEST_P(ForceDimension, ADeviceThatTheirRobotsLibraryRefusesIsOpenedWithoutIt)
+{
+    device.open();
+    EXPECT_TRUE(sdk.isRobot) << "the functions drd* serve no other";
+    device.close();
+    sdk.knowsDrd = false;
+    device.open();
+    run(0.1, push);
+    EXPECT_EQ(sdk.opened, 2);
+    EXPECT_TRUE(state.homed) << "its status alone says so";
+    EXPECT_GT(force_(), 1);
+    device.close();
+    EXPECT_EQ(sdk.closed, 2) << "as it was opened";
 }
 
 TEST_P(ForceDimension, IsListedWithItsName)

@@ -38,6 +38,8 @@ std::unique_ptr<const DrdLibrary> loadDrd()
     drd->place        = library.place();
     library.take("dhdGetSDKVersion", drd->dhdGetSDKVersion);
     library.take("dhdGetDeviceCount", drd->dhdGetDeviceCount);
+    library.take("drdOpenID", drd->drdOpenID);
+    library.take("drdClose", drd->drdClose);
     library.take("dhdOpenID", drd->dhdOpenID);
     library.take("dhdClose", drd->dhdClose);
     library.take("dhdGetSystemType", drd->dhdGetSystemType);

@@ -9,7 +9,9 @@ namespace palp {
 struct DrdLibrary {
     void (*dhdGetSDKVersion)(int*, int*, int*, int*);
     int (*dhdGetDeviceCount)();
-    int (*dhdOpenID)(char); ///< by index; returns the device's number
+    int (*drdOpenID)(char); ///< by index; returns the device's number, which the functions drd* know from then on
+    int (*drdClose)(char);
+    int (*dhdOpenID)(char); ///< likewise, of a device that the functions drd* do not know
     int (*dhdClose)(char);
     int (*dhdGetSystemType)(char);
     const char* (*dhdGetSystemName)(char);

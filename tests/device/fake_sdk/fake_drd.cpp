@@ -46,12 +46,26 @@ int dhdGetDeviceCount()
 int dhdOpenID(char index)
 {
     if (sdk().error != 0 || index != 0) return -1;
+    sdk().isRobot = false;
     ++sdk().opened;
     return 4;
 }
 int dhdClose(char id)
 {
-    if (id != 4) return -1;
+    if (id != 4 || sdk().isRobot) return -1;
+    ++sdk().closed;
+    return 0;
+}
+int drdOpenID(char index)
+{
+    if (sdk().error != 0 || index != 0 || !sdk().knowsDrd) return -1;
+    sdk().isRobot = true;
+    ++sdk().opened;
+    return 4;
+}
+int drdClose(char id)
+{
+    if (id != 4 || !sdk().isRobot) return -1;
     ++sdk().closed;
     return 0;
 }
@@ -139,16 +153,17 @@ const char* dhdErrorGetLastStr()
 }
 bool drdIsInitialized(char)
 {
-    return sdk().isReady;
+    return sdk().isRobot && sdk().isReady;
 }
 int drdAutoInit(char)
 {
+    if (!sdk().isRobot) return -1;
     ++sdk().calibrated;
     sdk().isReady = true;
     return result();
 }
 int drdStop(bool, char)
 {
-    return result();
+    return sdk().isRobot ? result() : -1;
 }
 }

@@ -16,6 +16,8 @@ struct FakeSdk {
     std::atomic<int>    type{33};              ///< Force Dimension: the library's number of it, an omega.3's
     std::atomic<bool>   hasPower{true};        ///< Force Dimension
     std::atomic<bool>   isBroken{false};       ///< Force Dimension: the device reports an error
+    std::atomic<bool>   knowsDrd{true};        ///< Force Dimension: drdOpenID() opens the device
+    std::atomic<bool>   isRobot{false};        ///< Force Dimension: it was opened so; drd* serve no other device
     std::atomic<bool>   isSame{false};         ///< Force Dimension: each read gives the sample of before
     std::atomic<bool>   isOutOfNumbers{false}; ///< positions are NaN
     std::atomic<bool>   isLost{false};         ///< OpenHaptics: its calibration is gone

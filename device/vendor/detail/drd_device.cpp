@@ -1,0 +1,34 @@
+#include "device/vendor/detail/drd_device.h"
+
+namespace palp {
+namespace {
+
+constexpr std::size_t kReset = 3; ///< of a status: the device has to be reset
+
+} // namespace
+
+DrdDevice openDrd(const DrdLibrary& drd, int index) noexcept
+{
+    if (const int id = drd.drdOpenID(char(index)); id >= 0) return {id, true};
+    return {drd.dhdOpenID(char(index)), false};
+}
+
+void closeDrd(const DrdLibrary& drd, DrdDevice& device) noexcept
+{
+    if (device.id < 0) return;
+    device.isRobot ? drd.drdClose(char(device.id)) : drd.dhdClose(char(device.id));
+    device = {};
+}
+
+bool isHomed(const DrdLibrary& drd, const DrdDevice& device, const DrdStatus& status) noexcept
+{
+    return status[kReset] == 0 && (!device.isRobot || drd.drdIsInitialized(char(device.id)));
+}
+
+bool isHomed(const DrdLibrary& drd, const DrdDevice& device) noexcept
+{
+    DrdStatus status{};
+    return drd.dhdGetStatus(status.data(), char(device.id)) >= 0 && isHomed(drd, device, status);
+}
+
+} // namespace palp
