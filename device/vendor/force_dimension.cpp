@@ -176,7 +176,7 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
         if (drd_->drdAutoInit(id) < 0) refuse("the arm did not find its stops");
         drd_->drdStop(true, id); // ends the movement, keeps the motors
     }
-    drd_->dhdSetMaxForce(std::min(kMostForce, info.maximumForce), id);
+    if (drd_->dhdSetMaxForce) drd_->dhdSetMaxForce(std::min(kMostForce, info.maximumForce), id);
     drd_->dhdSetBrakes(0, id);
     if (drd_->dhdEnableForce(1, id) < 0) refuse("its motors cannot be switched on");
     drd_->dhdSetGravityCompensation(1, id); // a Falcon has none, and says so

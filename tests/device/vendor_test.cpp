@@ -175,6 +175,8 @@ TEST_P(MakersLibraries, AnOldLibraryIsRefusedByWhatItLacks)
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find(std::string("lacks ") + GetParam().lacks), std::string::npos)
             << error.what();
+        EXPECT_EQ(std::string(error.what()).find("dhdSetMaxForce"), std::string::npos)
+            << "version 3.7 works without it: " << error.what();
     }
 }
 

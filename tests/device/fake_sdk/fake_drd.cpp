@@ -126,10 +126,12 @@ int dhdSetForceAndTorqueAndGripperForce(double x, double y, double z, double, do
     sdk().force[2] = z;
     return 2; // saturated: no error
 }
+#ifndef PALPATE_FAKE_OLD
 int dhdSetMaxForce(double, char)
 {
     return result();
 }
+#endif
 int dhdGetStatus(int* status, char)
 {
     for (int n = 0; n < 17; ++n) status[n] = 0;
