@@ -49,10 +49,12 @@ const char* reasonOf(int cause) noexcept
 }
 
 /// Returns why the device makes no force, by all its status; an empty text if it can.
-const char* reasonOf(const DrdStatus& status) noexcept
+/// \param isOn  its motors were switched on: only then are brakes and a force that is off a reason
+const char* reasonOf(const DrdStatus& status, bool isOn) noexcept
 {
     if (status[kPower] == 0) return "the device has no power; see its supply";
     if (status[kError] != 0) return "the device reports an error; switch it off and on again";
+    if (!isOn) return "";
     if (status[kForceOff] != 0) return reasonOf(status[kForceOff]);
     return status[kBrake] != 0 ? "the device's brakes are on" : "";
 }
@@ -122,6 +124,8 @@ public:
     void close() noexcept override;
 
 private:
+    bool               switchOn() noexcept;
+    void               switchOff() noexcept;
     [[nodiscard]] bool render(const glm::dvec3& force) noexcept;
     [[nodiscard]] int  readHand(LineSample& sample) noexcept;
     bool               readStatus(const LineOrder& order, LineSample& sample) noexcept;
@@ -130,8 +134,9 @@ private:
     ForceDimensionSettings            settings_;
     std::unique_ptr<const DrdLibrary> drd_;
     DrdDevice                         device_;
-    int                               errors_ = 0; ///< calls in a row
-    int                               off_    = 0; ///< exchanges at zero force since the device switched it off
+    bool                              isHomed_ = false; ///< its motors are on only then
+    int                               errors_  = 0;     ///< calls in a row
+    int                               off_     = 0;     ///< exchanges at zero force since the device switched it off
 };
 
 void ForceDimensionLine::refuse(const std::string& what)
@@ -177,11 +182,28 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
         drd_->drdStop(true, id); // ends the movement, keeps the motors
     }
     if (drd_->dhdSetMaxForce) drd_->dhdSetMaxForce(std::min(kMostForce, info.maximumForce), id);
-    drd_->dhdSetBrakes(0, id);
-    if (drd_->dhdEnableForce(1, id) < 0) refuse("its motors cannot be switched on");
-    drd_->dhdSetGravityCompensation(1, id); // a Falcon has none, and says so
-    if (!render({})) refuse("it takes no forces");
+    isHomed_ = isHomed(*drd_, device_);
+    if (isHomed_ && !switchOn()) refuse("its motors cannot be switched on");
+    if (isHomed_ && !render({})) refuse("it takes no forces");
     std::this_thread::sleep_for(std::chrono::duration<double>(kSettle));
+}
+
+/// Lets go of the brakes and switches the motors on. Only for an arm that knows where it is: the compensation of gravity
+/// pushes by what the encoders say.
+bool ForceDimensionLine::switchOn() noexcept
+{
+    const auto id = char(device_.id);
+    drd_->dhdSetBrakes(0, id);
+    const bool isOn = drd_->dhdEnableForce(1, id) >= 0;
+    drd_->dhdSetGravityCompensation(1, id); // a Falcon has none, and says so
+    return isOn;
+}
+
+void ForceDimensionLine::switchOff() noexcept
+{
+    static_cast<void>(render({}));
+    drd_->dhdSetGravityCompensation(0, char(device_.id));
+    drd_->dhdEnableForce(0, char(device_.id));
 }
 
 bool ForceDimensionLine::render(const glm::dvec3& force) noexcept
@@ -210,8 +232,8 @@ int ForceDimensionLine::readHand(LineSample& sample) noexcept
     return 0;
 }
 
-/// Reads what the device says of itself. A force that it has switched off by itself is switched on again once it was
-/// asked for none for a while; one that somebody has switched off is not.
+/// Reads what the device says of itself. Its motors go on once it knows where its arm is. A force that it has switched
+/// off by itself is switched on again once it was asked for none for a while; one that somebody has switched off is not.
 /// \return false if it says nothing
 bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) noexcept
 {
@@ -224,22 +246,24 @@ bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) 
         sample.words = "the device was unplugged or switched off";
         return true;
     }
-    sample.homed      = isHomed(*drd_, device_, status);
-    sample.words      = reasonOf(status);
+    const bool wasHomed = std::exchange(isHomed_, isHomed(*drd_, device_, status));
+    if (isHomed_ && !wasHomed) switchOn();
+    if (!isHomed_ && wasHomed) switchOff();
+    sample.homed      = isHomed_;
+    sample.words      = reasonOf(status, isHomed_ && wasHomed); // of before they were switched on
     sample.fault      = *sample.words ? DeviceFault::ownWatchdog : DeviceFault::none;
-    const bool mayTry = sample.fault != DeviceFault::none && !isWanted(status[kForceOff]) && !order.enable;
+    const bool mayTry = sample.fault != DeviceFault::none && isHomed_ && !isWanted(status[kForceOff]) && !order.enable;
     off_              = mayTry ? off_ + 1 : 0;
     if (off_ < settings_.exchangesToTry) return true;
     off_ = 0;
-    drd_->dhdSetBrakes(0, id);
-    drd_->dhdEnableForce(1, id);
+    switchOn();
     return true;
 }
 
 void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) noexcept
 {
     if (device_.id < 0) return;
-    const bool isTaken = render(order.force);
+    const bool isTaken = !isHomed_ || render(order.force);
     const int  isRead  = readHand(sample);
     sample.news        = isRead == 0 ? LineNews::sample : LineNews::none;
     const bool isTold  = readStatus(order, sample);
@@ -276,8 +300,8 @@ std::vector<DeviceListing> list(HidSystem& /*hid*/)
             const char* name = drd->dhdGetSystemName(char(device.id));
             listing.model    = std::string("Force Dimension ") + (name ? name : "device");
             listing.usable   = true;
-            listing.answers  = true;
-            if (!isHomed(*drd, device)) {
+            listing.answers  = isHomed(*drd, device);
+            if (!listing.answers) { // and no rate is measured of it
                 listing.why  = "it has not been reset";
                 listing.help = "press its RESET button, or use " + std::string(kForceDimensionInit.flag);
             }

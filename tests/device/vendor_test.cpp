@@ -44,7 +44,8 @@ FakeSdk& registersOf(const std::string& library)
     sdk.isPresent = sdk.isReady = true;
     sdk.type                    = 33;
     sdk.hasPower = sdk.knowsDrd = true;
-    sdk.isRobot                 = false;
+    sdk.isRobot = sdk.isBalanced = false;
+    sdk.areBrakesOn              = true;
     sdk.isBroken = sdk.isLost = false;
     sdk.isForceOn = sdk.isSame = sdk.isOutOfNumbers = sdk.callsLate = false;
     sdk.error = sdk.status = sdk.opened = sdk.closed = sdk.enabled = sdk.calibrated = sdk.calls = sdk.lateCallbacks =
@@ -399,6 +400,31 @@ TEST_P(ForceDimension, ADeviceThatTheirRobotsLibraryRefusesIsOpenedWithoutIt)
     EXPECT_GT(force_(), 1);
     device.close();
     EXPECT_EQ(sdk.closed, 2) << "as it was opened";
+}
+
+/// What its encoders say means nothing before: the compensation of gravity alone would push.
+TEST_P(ForceDimension, AnArmThatDoesNotKnowWhereItIsHasNoPower)
+{
+    const auto hasPower = [&] { return sdk.isForceOn || sdk.isBalanced || !sdk.areBrakesOn; };
+    sdk.isReady         = false;
+    device.open();
+    run(3, push);
+    EXPECT_FALSE(state.homed);
+    EXPECT_EQ(state.fault, DeviceFault::none) << "brakes and all: it waits for its reset";
+    EXPECT_FALSE(hasPower());
+    FakeHidSystem hid;
+    const auto    listed = kForceDimensionRecord.list(hid);
+    EXPECT_FALSE(listed.at(0).answers) << "so no rate is measured of it";
+    EXPECT_FALSE(listed.at(0).help.empty());
+    sdk.isReady = true;
+    run(0.1, push);
+    EXPECT_TRUE(sdk.isForceOn && sdk.isBalanced && !sdk.areBrakesOn);
+    EXPECT_GT(force_(), 1);
+    EXPECT_TRUE(kForceDimensionRecord.list(hid).at(0).answers);
+    sdk.isReady = false; // somebody presses its button once more
+    run(1, push);
+    EXPECT_FALSE(sdk.isForceOn || sdk.isBalanced);
+    EXPECT_EQ(force_(), 0);
 }
 
 TEST_P(ForceDimension, IsListedWithItsName)

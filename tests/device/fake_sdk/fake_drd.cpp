@@ -105,16 +105,18 @@ int dhdEnableForce(unsigned char on, char)
 {
     sdk().isForceOn = on != 0;
     sdk().status    = 0;
-    ++sdk().enabled;
+    sdk().enabled += on != 0 ? 1 : 0;
     return result();
 }
-int dhdSetBrakes(int, char)
+int dhdSetBrakes(int on, char)
 {
+    sdk().areBrakesOn = on != 0;
     return result();
 }
 #ifndef PALPATE_FAKE_OLD
-int dhdSetGravityCompensation(int, char)
+int dhdSetGravityCompensation(int on, char)
 {
+    sdk().isBalanced = on != 0;
     return -1; // as of a Falcon
 }
 #endif
@@ -137,6 +139,7 @@ int dhdGetStatus(int* status, char)
     for (int n = 0; n < 17; ++n) status[n] = 0;
     status[0]  = sdk().hasPower ? 1 : 0;
     status[2]  = 1;
+    status[6]  = sdk().areBrakesOn ? 1 : 0;
     status[9]  = sdk().isBroken ? 1 : 0;
     status[1]  = sdk().isPresent ? 1 : 0;
     status[3]  = sdk().isReady ? 0 : 1;

@@ -18,6 +18,8 @@ struct FakeSdk {
     std::atomic<bool>   isBroken{false};       ///< Force Dimension: the device reports an error
     std::atomic<bool>   knowsDrd{true};        ///< Force Dimension: drdOpenID() opens the device
     std::atomic<bool>   isRobot{false};        ///< Force Dimension: it was opened so; drd* serve no other device
+    std::atomic<bool>   areBrakesOn{true};     ///< Force Dimension
+    std::atomic<bool>   isBalanced{false};     ///< Force Dimension: gravity is compensated
     std::atomic<bool>   isSame{false};         ///< Force Dimension: each read gives the sample of before
     std::atomic<bool>   isOutOfNumbers{false}; ///< positions are NaN
     std::atomic<bool>   isLost{false};         ///< OpenHaptics: its calibration is gone
