@@ -25,7 +25,15 @@ constexpr double kMostForce = 12;  ///< [N] that the library lets through, beyon
 constexpr int    kSame      = 1;   ///< of a read: the sample is that of the last read (TIMEGUARD)
 constexpr double kSettle    = 0.1; ///< [s] at zero force before the first sample
 
-enum Status : std::size_t { kPower = 0, kConnected = 1, kStarted = 2, kBrake = 6, kError = 9, kForceOff = 14 };
+enum Status : std::size_t {
+    kPower     = 0,
+    kConnected = 1,
+    kStarted   = 2,
+    kForce     = 5,
+    kBrake     = 6,
+    kError     = 9,
+    kForceOff  = 14
+};
 
 /// Why the device itself has switched the force off, by its status.
 const char* reasonOf(int cause) noexcept
@@ -56,7 +64,8 @@ const char* reasonOf(const DrdStatus& status, bool isOn) noexcept
     if (status[kError] != 0) return "the device reports an error; switch it off and on again";
     if (!isOn) return "";
     if (status[kForceOff] != 0) return reasonOf(status[kForceOff]);
-    return status[kBrake] != 0 ? "the device's brakes are on" : "";
+    if (status[kBrake] != 0) return "the device's brakes are on";
+    return status[kForce] == 0 ? "the device's force is off" : "";
 }
 
 /// Returns whether a person or another program wants the force to be off: then it is theirs to switch on again.

@@ -310,6 +310,23 @@ TEST_P(ForceDimension, WhatStopsTheForceIsSaidAndItComesBackByItself)
     }
 }
 
+/// As older firmware has it, which tells no cause.
+TEST_P(ForceDimension, AForceThatIsOffWithoutACauseIsAFaultAndComesBack)
+{
+    device.open();
+    run(0.1, push);
+    const double since = now;
+    sdk.isForceOn      = false;
+    run(0.03, push);
+    EXPECT_EQ(state.fault, DeviceFault::ownWatchdog);
+    EXPECT_NE(std::string(device.faultWords()).find("force is off"), std::string::npos) << device.faultWords();
+    EXPECT_LE(pushed - since, kZero);
+    run(0.3, push);
+    EXPECT_EQ(state.fault, DeviceFault::none) << "switched on again, at zero force";
+    EXPECT_TRUE(sdk.isForceOn);
+    EXPECT_GT(force_(), 1);
+}
+
 TEST_P(ForceDimension, AForceThatSomebodySwitchedOffStaysOff)
 {
     for (const auto& [cause, words] : {std::pair{1, "button"}, {4, "another program"}, {6, "dead man"}}) {

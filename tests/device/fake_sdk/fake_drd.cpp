@@ -137,8 +137,10 @@ int dhdSetMaxForce(double, char)
 int dhdGetStatus(int* status, char)
 {
     for (int n = 0; n < 17; ++n) status[n] = 0;
-    status[0]  = sdk().hasPower ? 1 : 0;
-    status[2]  = 1;
+    status[0] = sdk().hasPower ? 1 : 0;
+    status[2] = 1;
+    if (!sdk().isReady) sdk().isForceOn = false; // a reset ends the force
+    status[5]  = sdk().isForceOn ? 1 : 0;
     status[6]  = sdk().areBrakesOn ? 1 : 0;
     status[9]  = sdk().isBroken ? 1 : 0;
     status[1]  = sdk().isPresent ? 1 : 0;
