@@ -108,14 +108,14 @@ struct Row {
     double force, stiffness, damping, radius; ///< [N], [N/m], [N s/m], [m]
     bool   rotates, grips;
 };
-constexpr Row kRows[] = {{33, 12, 5000, 30, 0.075, false, false},  {34, 12, 5000, 30, 0.075, true, false},
-                         {36, 12, 5000, 30, 0.075, true, false},   {35, 12, 5000, 30, 0.075, true, true},
-                         {37, 12, 5000, 30, 0.075, true, true},    {63, 20, 5000, 30, 0.15, false, false},
-                         {104, 12, 4000, 30, 0.075, true, true},   {105, 12, 4000, 30, 0.075, true, true},
-                         {206, 12, 4000, 30, 0.075, false, false}, {108, 12, 8000, 30, 0.1125, true, true},
-                         {109, 12, 8000, 30, 0.1125, true, true},  {131, 12, 8000, 30, 0.1125, true, false},
-                         {132, 12, 8000, 30, 0.1125, true, false}, {203, 12, 8000, 30, 0.1125, false, false},
-                         {60, 8, 3000, 20, 0.04, false, false}};
+constexpr Row kRows[] = {{33, 12, 5000, 30, 0.075, false, false},      {34, 12, 5000, 30, 0.075, true, false},
+                         {36, 12, 5000, 30, 0.075, true, false},       {35, 12, 5000, 30, 0.075, true, true},
+                         {37, 12, 5000, 30, 0.075, true, true},        {63, 20, 5000, 30, 0.15, false, false},
+                         {104, 12, 4000, 30, 0.075, true, true},       {105, 12, 4000, 30, 0.075, true, true},
+                         {206, 12, 4000, 30, 0.075, false, false},     {108, 12, 8000, 30, 0.1125, true, true},
+                         {109, 12, 8000, 30, 0.1125, true, true},      {131, 12, 8000, 30, 0.1125, true, false},
+                         {132, 12, 8000, 30, 0.1125, true, false},     {203, 12, 8000, 30, 0.1125, false, false},
+                         {kDrdFalcon, 8, 3000, 20, 0.04, false, false}};
 constexpr Row kWeakest{-1, 8, 3000, 20, 0.04, false, false}; ///< the least of each column
 
 bool isKnownType(int type) noexcept
@@ -174,7 +174,7 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
     const auto        id    = char(device_.id);
     const char* const name  = drd_->dhdGetSystemName(id);
     const bool        isSim = info.isSimulation;
-    const int         type  = drd_->dhdGetSystemType(id);
+    const int         type  = device_.type;
     info                    = forceDimensionInfo(type);
     info.isSimulation       = isSim;
     if (!isKnownType(type))
@@ -186,7 +186,7 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
     if (drd_->dhdGetSerialNumber(&serial, id) >= 0) info.serial = std::to_string(serial);
     info.hasGripper = info.hasGripper && drd_->dhdGetGripperAngleRad;
 
-    if (settings_.mayInitialise && device_.isRobot && !isHomed(*drd_, device_)) {
+    if (settings_.mayInitialise && device_.isRobot && type != kDrdFalcon && !isHomed(*drd_, device_)) {
         if (drd_->drdAutoInit(id) < 0) refuse("the arm did not find its stops");
         drd_->drdStop(true, id); // ends the movement, keeps the motors
     }
@@ -311,8 +311,10 @@ std::vector<DeviceListing> list(HidSystem& /*hid*/)
             listing.usable   = true;
             listing.answers  = isHomed(*drd, device);
             if (!listing.answers) { // and no rate is measured of it
-                listing.why  = "it has not been reset";
-                listing.help = "press its RESET button, or use " + std::string(kForceDimensionInit.flag);
+                listing.why  = device.type == kDrdFalcon ? "it is not homed" : "it has not been reset";
+                listing.help = device.type == kDrdFalcon
+                                   ? "pull its grip all the way out, then push it all the way in"
+                                   : "press its RESET button, or use " + std::string(kForceDimensionInit.flag);
             }
             closeDrd(*drd, device);
         } else {
@@ -387,9 +389,10 @@ HapticDeviceInfo forceDimensionInfo(int type)
     info.maximumDamping   = row.damping;
     info.buttons          = 8;
     info.needsHoming      = true;
-    info.homing           = "press its RESET button, or start again with --forcedimension-init, hands off";
-    info.rotates          = row.rotates;
-    info.hasGripper       = row.grips;
+    info.homing =
+        type == kDrdFalcon ? "" : "press its RESET button, or start again with --forcedimension-init, hands off";
+    info.rotates    = row.rotates;
+    info.hasGripper = row.grips;
     return info;
 }
 

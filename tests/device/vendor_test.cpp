@@ -404,6 +404,23 @@ TEST_P(ForceDimension, TheArmMovesByItselfOnlyIfTheUserLetsIt)
     EXPECT_EQ(sdk.calibrated, 1);
 }
 
+/// It has no RESET button, and the library cannot move it.
+TEST_P(ForceDimension, AFalconIsHomedByHand)
+{
+    sdk.type    = 60;
+    sdk.isReady = false;
+    FakeHidSystem     hid;
+    const std::string help = kForceDimensionRecord.list(hid).at(0).help;
+    EXPECT_EQ(help.find("RESET"), std::string::npos) << help;
+    EXPECT_NE(help.find("grip all the way out"), std::string::npos) << help;
+    LineDevice falcon(makeForceDimensionLine({.mayInitialise = true}), forceDimensionInfo(60),
+                      {.pace = LinePace::caller});
+    falcon.open();
+    EXPECT_EQ(sdk.calibrated, 0);
+    EXPECT_TRUE(falcon.info().needsHoming);
+    EXPECT_EQ(falcon.info().homing, "") << "said as of a Falcon";
+}
+
 TEST_P(ForceDimension, ADeviceThatTheirRobotsLibraryRefusesIsOpenedWithoutIt)
 {
     device.open();

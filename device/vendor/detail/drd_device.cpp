@@ -9,8 +9,10 @@ constexpr std::size_t kReset = 3; ///< of a status: the device has to be reset
 
 DrdDevice openDrd(const DrdLibrary& drd, int index) noexcept
 {
-    if (const int id = drd.drdOpenID(char(index)); id >= 0) return {id, true};
-    return {drd.dhdOpenID(char(index)), false};
+    DrdDevice device{drd.drdOpenID(char(index)), true};
+    if (device.id < 0) device = {drd.dhdOpenID(char(index)), false};
+    if (device.id >= 0) device.type = drd.dhdGetSystemType(char(device.id));
+    return device;
 }
 
 void closeDrd(const DrdLibrary& drd, DrdDevice& device) noexcept
@@ -22,7 +24,8 @@ void closeDrd(const DrdLibrary& drd, DrdDevice& device) noexcept
 
 bool isHomed(const DrdLibrary& drd, const DrdDevice& device, const DrdStatus& status) noexcept
 {
-    return status[kReset] == 0 && (!device.isRobot || drd.drdIsInitialized(char(device.id)));
+    const bool asksRobot = device.isRobot && device.type != kDrdFalcon; // which the functions drd* cannot move
+    return status[kReset] == 0 && (!asksRobot || drd.drdIsInitialized(char(device.id)));
 }
 
 bool isHomed(const DrdLibrary& drd, const DrdDevice& device) noexcept

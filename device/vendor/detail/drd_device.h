@@ -12,7 +12,10 @@ using DrdStatus = std::array<int, kDrdStatus>;
 struct DrdDevice {
     int  id      = -1;    ///< the library's number for it; -1: closed
     bool isRobot = false; ///< drdOpenID() opened it: the functions drd* know it, and drdClose() closes it
+    int  type    = 0;     ///< the library's number of it
 };
+
+inline constexpr int kDrdFalcon = 60; ///< a type: a Novint Falcon, which is homed by hand, with no button and no program
 
 /// Opens a device by its index: for all functions of the library, or, where that fails, for those named dhd* alone.
 [[nodiscard]] DrdDevice openDrd(const DrdLibrary& drd, int index) noexcept;
