@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -21,9 +22,10 @@ namespace {
 
 constexpr std::array kOptions{kForceDimensionInit};
 
-constexpr double kMostForce = 12;  ///< [N] that the library lets through, beyond what the governor does
-constexpr int    kSame      = 1;   ///< of a read: the sample is that of the last read (TIMEGUARD)
-constexpr double kSettle    = 0.1; ///< [s] at zero force before the first sample
+constexpr double kMostForce = 12;    ///< [N] that the library lets through, beyond what the governor does
+constexpr int    kSame      = 1;     ///< of a read: the sample is that of the last read (TIMEGUARD)
+constexpr double kDeaf      = 20e-3; ///< [s] of calls that fail, after which it is told to stop: it may hold a force
+constexpr double kSettle    = 0.1;   ///< [s] at zero force before the first sample
 
 enum Status : std::size_t {
     kPower     = 0,
@@ -140,13 +142,21 @@ private:
     bool               readStatus(const LineOrder& order, LineSample& sample) noexcept;
     [[noreturn]] void  refuse(const std::string& what);
 
+    [[nodiscard]] double now() const;
+
     ForceDimensionSettings            settings_;
     std::unique_ptr<const DrdLibrary> drd_;
     DrdDevice                         device_;
     bool                              isHomed_ = false; ///< its motors are on only then
-    int                               errors_  = 0;     ///< calls in a row
-    int                               off_     = 0;     ///< exchanges at zero force since the device switched it off
+    std::optional<double>             failing_;         ///< [s] since when each exchange fails
+    std::optional<double> off_; ///< [s] since when the device, which has switched it off, is asked for no force
 };
+
+double ForceDimensionLine::now() const
+{
+    if (settings_.clock) return settings_.clock();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 void ForceDimensionLine::refuse(const std::string& what)
 {
@@ -164,7 +174,8 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
         throw Error(std::string("Force Dimension's SDK cannot be used: ") + error.what() +
                     "; install their SDK 3 and set FORCEDIM_SDK to its folder");
     }
-    errors_ = off_ = 0;
+    failing_.reset();
+    off_.reset();
     if (const int count = drd_->dhdGetDeviceCount(); count <= settings_.index)
         throw Error("Force Dimension: device number " + std::to_string(settings_.index) + " was asked for, and " +
                     std::to_string(std::max(0, count)) +
@@ -262,10 +273,11 @@ bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) 
     sample.words      = reasonOf(status, isHomed_ && wasHomed); // of before they were switched on
     sample.fault      = *sample.words ? DeviceFault::ownWatchdog : DeviceFault::none;
     const bool mayTry = sample.fault != DeviceFault::none && isHomed_ && !isWanted(status[kForceOff]) && !order.enable;
-    off_              = mayTry ? off_ + 1 : 0;
-    if (off_ < settings_.exchangesToTry) return true;
-    off_ = 0;
-    switchOn();
+    if (!mayTry) off_.reset();
+    if (mayTry && now() - *(off_ = off_.value_or(now())) >= settings_.restToTry) {
+        off_.reset();
+        switchOn();
+    }
     return true;
 }
 
@@ -276,10 +288,15 @@ void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) no
     const int  isRead  = readHand(sample);
     sample.news        = isRead == 0 ? LineNews::sample : LineNews::none;
     const bool isTold  = readStatus(order, sample);
-    errors_            = isTaken && isRead >= 0 && isTold ? 0 : errors_ + 1;
-    if (errors_ <= settings_.mostErrors || isFinal(sample.fault)) return;
+    if (isTaken && isRead >= 0 && isTold)
+        failing_.reset();
+    else if (!failing_)
+        failing_ = now();
+    const double past = failing_ ? now() - *failing_ : 0;
+    if (past < kDeaf || isFinal(sample.fault)) return;
     static_cast<void>(render({})); // the device may still hear
     drd_->dhdStop(char(device_.id));
+    if (past < settings_.mostErrors) return;
     sample.fault = DeviceFault::linkLost;
     sample.words = "each call of Force Dimension's library fails; see its cable, and plug it in again";
 }

@@ -24,6 +24,8 @@ namespace {
 constexpr double kTick = 1e-3;  // [s]
 constexpr double kZero = 30e-3; // [s] by which a force has ended, whatever happens
 
+double virtualTime = 0; // [s] of the lines' clock
+
 /// Points the loader at a folder, and back at nothing.
 struct Environment {
     Environment(const char* variable, const std::string& folder) : name(variable)
@@ -76,9 +78,9 @@ struct Maker {
 
 constexpr Maker kMakers[] = {
     {"ForceDimension", "FORCEDIM_SDK", PALPATE_FAKE_SDK "/libdrd.so.3", "dhdSetGravityCompensation",
-     [] { return makeForceDimensionLine({.exchangesToTry = 50}); }, [] { return forceDimensionInfo(33); },
-     [](const glm::dvec3& v) { return glm::dvec3(v.y, v.z, v.x); }, 1, &kForceDimensionRecord, 1,
-     DeviceFault::linkLost},
+     [] { return makeForceDimensionLine({.restToTry = 0.05, .clock = [] { return virtualTime; }}); },
+     [] { return forceDimensionInfo(33); }, [](const glm::dvec3& v) { return glm::dvec3(v.y, v.z, v.x); }, 1,
+     &kForceDimensionRecord, 1, DeviceFault::linkLost},
     {"OpenHaptics", "OPENHAPTICS", PALPATE_FAKE_SDK "/libHD.so", "hdUnschedule",
      [] { return makeOpenHapticsLine({.exchangesToTry = 50, .exchangesToLook = 20}); },
      [] { return openHapticsInfo("Touch"); }, [](const glm::dvec3& v) { return v; }, 1e-3, &kOpenHapticsRecord, 0x302,
@@ -94,7 +96,8 @@ protected:
     void run(double seconds, const GovernedForce& force)
     {
         for (const double end = now + seconds - kTick / 2; now < end; now += kTick) {
-            state = device.exchange(force, now);
+            virtualTime = now;
+            state       = device.exchange(force, now);
             if (force_() > 0) pushed = now;
         }
     }
@@ -325,6 +328,36 @@ TEST_P(ForceDimension, AForceThatIsOffWithoutACauseIsAFaultAndComesBack)
     EXPECT_EQ(state.fault, DeviceFault::none) << "switched on again, at zero force";
     EXPECT_TRUE(sdk.isForceOn);
     EXPECT_GT(force_(), 1);
+}
+
+/// However many exchanges are made in that time: a library may make 1000 or 4000 a second.
+TEST_P(ForceDimension, ItsPatienceIsOneInSeconds)
+{
+    for (const int eachTick : {1, 4}) {
+        device.open();
+        run(0.1, push);
+        const auto ticks = [&](int count) {
+            const double rest = now;
+            for (int n = 0; n < count * eachTick; ++n) {
+                virtualTime = now = rest + kTick * n / eachTick;
+                state             = device.exchange(push, now);
+            }
+        };
+        sdk.status = 3;
+        ticks(45);
+        EXPECT_EQ(state.fault, DeviceFault::ownWatchdog) << eachTick;
+        EXPECT_EQ(sdk.status, 3) << "it rests for 50 ms in this test";
+        ticks(20);
+        EXPECT_EQ(sdk.status, 0) << eachTick;
+        run(0.1, push);
+        sdk.error = 1;
+        ticks(50);
+        EXPECT_NE(state.fault, DeviceFault::linkLost) << eachTick;
+        ticks(50);
+        EXPECT_EQ(state.fault, DeviceFault::linkLost) << eachTick;
+        sdk.error = 0;
+        device.close();
+    }
 }
 
 TEST_P(ForceDimension, AForceThatSomebodySwitchedOffStaysOff)
