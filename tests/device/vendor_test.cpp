@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include <dlfcn.h>
 #include <glm/geometric.hpp>
@@ -51,8 +52,8 @@ FakeSdk& registersOf(const std::string& library)
     sdk.isBroken = sdk.isLost = false;
     sdk.isForceOn = sdk.isSame = sdk.isOutOfNumbers = sdk.callsLate = false;
     sdk.error = sdk.status = sdk.opened = sdk.closed = sdk.enabled = sdk.calibrated = sdk.calls = sdk.lateCallbacks =
-        sdk.openError                                                                           = 0;
-    sdk.callbackThreads                                                                         = 1;
+        sdk.openError = sdk.startError = sdk.nextError = 0;
+    sdk.callbackThreads                                = 1;
     return sdk;
 }
 
@@ -543,6 +544,42 @@ TEST_P(OpenHaptics, ErrorsOfAForceAreSaidAndTheForceComesBack)
         EXPECT_GT(force_(), 1);
         device.close();
     }
+}
+
+/// The library keeps several and gives one at each call.
+TEST_P(OpenHaptics, OfSeveralErrorsTheWorstCounts)
+{
+    for (const auto& [first, second, fault] : {std::tuple{0x101, 0x203, DeviceFault::ownWatchdog},
+                                               {0x203, 0x302, DeviceFault::linkLost},
+                                               {0x302, 0x203, DeviceFault::linkLost}}) {
+        device.open();
+        run(0.1, push);
+        sdk.nextError = second;
+        sdk.error     = first;
+        run(kTick, push);
+        EXPECT_EQ(state.fault, fault) << first << ", " << second;
+        EXPECT_EQ(sdk.error, 0) << "none is kept for later";
+        device.close();
+    }
+}
+
+TEST_P(OpenHaptics, ASchedulerThatDoesNotStartIsASentence)
+{
+    LineDevice real(makeOpenHapticsLine(), openHapticsInfo("Touch"));
+    sdk.startError = 0x304; // late at first: an error of forces, which the exchanges judge
+    real.open();
+    real.close();
+    sdk.startError = 0x103;
+    try {
+        real.open();
+        ADD_FAILURE() << "nobody makes exchanges";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("scheduler"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(sdk.opened, sdk.closed);
+    EXPECT_EQ(real.read(0).fault, DeviceFault::closed);
+    sdk.startError = 0;
+    EXPECT_TRUE((real.open(), until(real, push, [&] { return state.fault == DeviceFault::none; })));
 }
 
 TEST_P(OpenHaptics, ACalibrationThatIsLostEndsTheForceAndABetterOneWaits)

@@ -24,6 +24,8 @@ struct FakeSdk {
     std::atomic<bool>   isOutOfNumbers{false}; ///< positions are NaN
     std::atomic<bool>   isLost{false};         ///< OpenHaptics: its calibration is gone
     std::atomic<int>    openError{0};          ///< OpenHaptics: of opening a device
+    std::atomic<int>    startError{0};         ///< OpenHaptics: of starting the scheduler
+    std::atomic<int>    nextError{0};          ///< OpenHaptics: that is kept behind `error`
     std::atomic<int>    opened{0}, closed{0}, enabled{0}, calibrated{0}, calls{0};
     std::atomic<int>    callbackThreads{1}; ///< OpenHaptics: of the scheduler; two call doubled
     std::atomic<int>    lateCallbacks{0};   ///< OpenHaptics: made after it was unscheduled
