@@ -77,7 +77,7 @@ bool isEnd(unsigned code) noexcept
     return code == kHdLine || code == kHdFault || code == kHdLicence;
 }
 
-/// Returns how bad an error is: 0 none, 1 one that changes nothing, 2 one that takes the force, 3 one that ends the link.
+/// Returns how bad an error is: 0 none, 1 it changes nothing, 2 it takes the force, 3 it ends the link.
 int rankOf(unsigned code) noexcept
 {
     if (isEnd(code)) return 3;

@@ -15,7 +15,7 @@ struct DrdDevice {
     int  type    = 0;     ///< the library's number of it
 };
 
-inline constexpr int kDrdFalcon = 60; ///< a type: a Novint Falcon, which is homed by hand, with no button and no program
+inline constexpr int kDrdFalcon = 60; ///< a type: a Novint Falcon, which is homed by hand alone
 
 /// Opens a device by its index: for all functions of the library, or, where that fails, for those named dhd* alone.
 [[nodiscard]] DrdDevice openDrd(const DrdLibrary& drd, int index) noexcept;
