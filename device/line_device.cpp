@@ -84,7 +84,13 @@ void LineDevice::open()
     inbox_.publish();
     open_ = true;
     if (settings_.pace == LinePace::caller) return;
-    if (line_->drive([this] { turn(true); })) return;
+    try {
+        if (line_->drive([this] { turn(true); })) return;
+    } catch (...) { // the line is closed
+        open_        = false;
+        state_.fault = DeviceFault::closed;
+        throw;
+    }
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 

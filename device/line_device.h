@@ -68,6 +68,7 @@ public:
 
     /// Has a thread of the line's library call `turn` about every millisecond until close().
     /// \return false if the line has no such thread: the LineDevice then makes one
+    /// \throws Error if the library has one that does not start; the line is closed then
     virtual bool drive(const std::function<void()>& /*turn*/) { return false; }
 };
 

@@ -17,6 +17,7 @@ PERIOD = 1e-3                       # [s]
 MASS, DAMPING = 0.3, 2.0            # [kg], [N s/m] of the arm
 GRIP, HAND = 300.0, 3.0             # [N/m], [N s/m] of the hand
 WATCHDOG_LIMIT = 0.1                # [s] no host may ask for more
+RESTART = 0.1                       # [s] without a command, after which the host may count from any number
 
 ANSWER = "<4BHHI3i3hh4hIH3h4HBB"    # 62 bytes, then the checksum
 COMMAND = "<4BHH3hBB46x"            # likewise
@@ -56,6 +57,9 @@ def main(port, seconds):
                 kind, p, b, version, number, flags, _, fy, _, ms, _ = struct.unpack(COMMAND, report[:62])
                 if (kind, p, b, version >> 4) != (2, 0x50, 0x42, 1):
                     continue
+                ahead = (number - rendered) & 0xFFFF
+                if not 0 < ahead < 0x8000 and now - heard <= RESTART:  # (int16)(number - rendered) > 0
+                    continue        # an old one, which came late
                 rendered, heard, patience = number, now, min(ms * 1e-3, WATCHDOG_LIMIT)
                 enabled = flags & 1
                 stopped = stopped and enabled       # until a command without "enable"
@@ -63,7 +67,7 @@ def main(port, seconds):
                 force = 0.0 if stopped else asked
         except (BlockingIOError, ConnectionRefusedError):
             pass                    # nothing more, or nobody listens yet
-        if force and now - heard > patience:        # the watchdog
+        if enabled and now - heard > patience:      # the watchdog
             force, stopped = 0.0, 1
         y, v = arm(y, v, force, now - start)
         most = max(most, abs(force))

@@ -40,7 +40,7 @@ struct EmulatedHaplySettings {
     bool                     echoes     = true;     ///< it says what it renders
     bool                     hasGrip    = true;
     bool                     hasSpeed   = true; ///< it tells the velocity
-    double                   forceGate  = 0;
+    double                   forceGate  = 0.3;  ///< as in Haply's own example; the force is rendered whole
     double                   forceScale = 1;
     double                   hold       = 5e-3; ///< [s] assumed: without a message it renders nothing after that
     double                   start      = 0;    ///< [s] of its clock

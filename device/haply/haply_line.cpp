@@ -168,11 +168,17 @@ std::string describeFilters(const HaplyDescription& device, std::optional<double
     const auto  add = [&](const std::string& what) { said += (said.empty() ? "" : ", ") + what; };
     if (!device.forceGate && !device.damping && !forceScale)
         return "the Inverse Service does not say whether it filters forces";
-    if (device.forceGate.value_or(0) != 0) add("a force gate of " + decimal(*device.forceGate));
     if (device.damping.value_or(0) != 0) add("damping of " + decimal(*device.damping));
     if (forceScale.value_or(1) != 1) add("a force scale of " + decimal(*forceScale));
     return said.empty() ? said
                         : "the Inverse Service changes forces by " + said + ": what is felt is not what is asked";
+}
+
+std::string describeGate(const HaplyDescription& device)
+{
+    if (device.forceGate.value_or(0) == 0) return "";
+    return "the Inverse Service's force gate is " + decimal(*device.forceGate) +
+           ": it lessens a force while the service finds that the arm oscillates, and no other";
 }
 
 HapticDeviceInfo haplyInfo(const std::string& type)

@@ -69,6 +69,9 @@ struct HaplyService {
 /// Says in sentences what the service does to a force on its way to the motors; empty if it says that it does nothing.
 [[nodiscard]] std::string describeFilters(const HaplyDescription& device, std::optional<double> forceScale);
 
+/// Returns what a device's force gate does, as a sentence; empty if it has none, or does not say.
+[[nodiscard]] std::string describeGate(const HaplyDescription& device);
+
 /// Returns the limits of a type of device: "inverse3", "minverse".
 [[nodiscard]] HapticDeviceInfo haplyInfo(const std::string& type);
 

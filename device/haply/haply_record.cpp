@@ -85,9 +85,12 @@ std::vector<Finding> findings()
         const HaplyService   service = inspectHaply(openerOf(usualPath()), kLook);
         std::vector<Finding> found{
             {part, Verdict::ok, service.version.empty() ? "it does not say its version" : service.version}};
-        for (const HaplyDescription& device : service.devices)
+        for (const HaplyDescription& device : service.devices) {
+            if (const std::string gate = describeGate(device); !gate.empty())
+                found.push_back({part, Verdict::ok, gate});
             if (const std::string changed = describeFilters(device, service.forceScale); !changed.empty())
                 found.push_back({part, Verdict::warning, changed, "set them back in the service's settings"});
+        }
         return found;
     } catch (const LineEnded&) {
         return {{part, Verdict::ok, "not running; an Inverse3 or Minverse needs it, nothing else does"}};

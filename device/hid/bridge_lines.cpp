@@ -15,6 +15,7 @@
 #include <netinet/in.h>
 #include <poll.h>
 #include <sys/file.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -138,6 +139,7 @@ private:
 class SerialPort : public DescriptorPort {
 public:
     using DescriptorPort::DescriptorPort;
+    ~SerialPort() override { ioctl(fd_, TIOCNXCL); } // a pseudo terminal would remember it
 
     std::size_t read(std::span<std::uint8_t> report, double timeout) override
     {
@@ -209,8 +211,10 @@ std::unique_ptr<HidPort> openSerial(const BridgeLine& line)
     }
     cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
-    cfsetspeed(&settings, B921600);                        // a board with USB of its own ignores it
-    const bool isOurs = flock(fd, LOCK_EX | LOCK_NB) == 0; // two programs at one arm would mix their forces
+    cfsetspeed(&settings, B921600); // a board with USB of its own ignores it
+    // Two programs at one arm would mix their forces. The lock stops those that ask for it, and of root's too; exclusive
+    // use all others but root's from now on, yet nobody who has the port open already.
+    const bool isOurs = flock(fd, LOCK_EX | LOCK_NB) == 0 && ioctl(fd, TIOCEXCL) == 0;
     if (!isOurs || tcsetattr(fd, TCSANOW, &settings) != 0) {
         const std::string why =
             isOurs ? std::string("cannot be set: ") + std::strerror(errno) : "is used by another program";

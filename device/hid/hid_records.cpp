@@ -35,12 +35,24 @@ std::vector<DeviceListing> listHid(HidSystem& hid, ModelOf modelOf)
     return devices;
 }
 
-/// Finds the first device that `modelOf` gives a model, or the one at the requested path.
+/// Finds the first device that `modelOf` gives a model and that can be opened, else the first, whose opening then says
+/// why not; or the one at the requested path.
 template <class ModelOf>
 HidListing listingFor(const DeviceRequest& request, ModelOf modelOf, const char* what)
 {
-    for (HidListing& listing : request.hid.list())
-        if ((request.path.empty() || listing.path == request.path) && modelOf(listing)) return std::move(listing);
+    const auto mayOpen = [&](const HidListing& listing) {
+        try {
+            return request.hid.open(listing.path) != nullptr;
+        } catch (const HidRefused&) {
+            return false;
+        }
+    };
+    std::vector<HidListing> all = request.hid.list();
+    std::erase_if(all, [&](const HidListing& listing) {
+        return (!request.path.empty() && listing.path != request.path) || !modelOf(listing);
+    });
+    const auto usable = all.size() < 2 ? all.begin() : std::ranges::find_if(all, mayOpen);
+    if (!all.empty()) return std::move(usable == all.end() ? all.front() : *usable);
     throw Error(std::string("no ") + what + " is plugged in" + (request.path.empty() ? "" : " at " + request.path) +
                 "; palpate devices lists what there is");
 }

@@ -4,12 +4,14 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <thread>
 #include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/mat3x3.hpp>
 
+#include "device/vendor/detail/drd_device.h"
 #include "device/vendor/detail/drd_library.h"
 #include "engine/core/contract.h"
 
@@ -20,15 +22,16 @@ namespace {
 
 constexpr std::array kOptions{kForceDimensionInit};
 
-constexpr double kMostForce = 12;  ///< [N] that the library lets through, beyond what the governor does
-constexpr int    kSame      = 1;   ///< of a read: the sample is that of the last read (TIMEGUARD)
-constexpr double kSettle    = 0.1; ///< [s] at zero force before the first sample
+constexpr double kMostForce = 12;    ///< [N] that the library lets through, beyond what the governor does
+constexpr int    kSame      = 1;     ///< of a read: the sample is that of the last read (TIMEGUARD)
+constexpr double kDeaf      = 20e-3; ///< [s] of calls that fail, after which it is told to stop: it may hold a force
+constexpr double kSettle    = 0.1;   ///< [s] at zero force before the first sample
 
 enum Status : std::size_t {
     kPower     = 0,
     kConnected = 1,
     kStarted   = 2,
-    kReset     = 3,
+    kForce     = 5,
     kBrake     = 6,
     kError     = 9,
     kForceOff  = 14
@@ -56,12 +59,15 @@ const char* reasonOf(int cause) noexcept
 }
 
 /// Returns why the device makes no force, by all its status; an empty text if it can.
-const char* reasonOf(const std::array<int, kDrdStatus>& status) noexcept
+/// \param isOn  its motors were switched on: only then are brakes and a force that is off a reason
+const char* reasonOf(const DrdStatus& status, bool isOn) noexcept
 {
     if (status[kPower] == 0) return "the device has no power; see its supply";
     if (status[kError] != 0) return "the device reports an error; switch it off and on again";
+    if (!isOn) return "";
     if (status[kForceOff] != 0) return reasonOf(status[kForceOff]);
-    return status[kBrake] != 0 ? "the device's brakes are on" : "";
+    if (status[kBrake] != 0) return "the device's brakes are on";
+    return status[kForce] == 0 ? "the device's force is off" : "";
 }
 
 /// Returns whether a person or another program wants the force to be off: then it is theirs to switch on again.
@@ -104,14 +110,14 @@ struct Row {
     double force, stiffness, damping, radius; ///< [N], [N/m], [N s/m], [m]
     bool   rotates, grips;
 };
-constexpr Row kRows[] = {{33, 12, 5000, 30, 0.075, false, false},  {34, 12, 5000, 30, 0.075, true, false},
-                         {36, 12, 5000, 30, 0.075, true, false},   {35, 12, 5000, 30, 0.075, true, true},
-                         {37, 12, 5000, 30, 0.075, true, true},    {63, 20, 5000, 30, 0.15, false, false},
-                         {104, 12, 4000, 30, 0.075, true, true},   {105, 12, 4000, 30, 0.075, true, true},
-                         {206, 12, 4000, 30, 0.075, false, false}, {108, 12, 8000, 30, 0.1125, true, true},
-                         {109, 12, 8000, 30, 0.1125, true, true},  {131, 12, 8000, 30, 0.1125, true, false},
-                         {132, 12, 8000, 30, 0.1125, true, false}, {203, 12, 8000, 30, 0.1125, false, false},
-                         {60, 8, 3000, 20, 0.04, false, false}};
+constexpr Row kRows[] = {{33, 12, 5000, 30, 0.075, false, false},      {34, 12, 5000, 30, 0.075, true, false},
+                         {36, 12, 5000, 30, 0.075, true, false},       {35, 12, 5000, 30, 0.075, true, true},
+                         {37, 12, 5000, 30, 0.075, true, true},        {63, 20, 5000, 30, 0.15, false, false},
+                         {104, 12, 4000, 30, 0.075, true, true},       {105, 12, 4000, 30, 0.075, true, true},
+                         {206, 12, 4000, 30, 0.075, false, false},     {108, 12, 8000, 30, 0.1125, true, true},
+                         {109, 12, 8000, 30, 0.1125, true, true},      {131, 12, 8000, 30, 0.1125, true, false},
+                         {132, 12, 8000, 30, 0.1125, true, false},     {203, 12, 8000, 30, 0.1125, false, false},
+                         {kDrdFalcon, 8, 3000, 20, 0.04, false, false}};
 constexpr Row kWeakest{-1, 8, 3000, 20, 0.04, false, false}; ///< the least of each column
 
 bool isKnownType(int type) noexcept
@@ -129,17 +135,28 @@ public:
     void close() noexcept override;
 
 private:
+    bool               switchOn() noexcept;
+    void               switchOff() noexcept;
     [[nodiscard]] bool render(const glm::dvec3& force) noexcept;
     [[nodiscard]] int  readHand(LineSample& sample) noexcept;
     bool               readStatus(const LineOrder& order, LineSample& sample) noexcept;
     [[noreturn]] void  refuse(const std::string& what);
 
+    [[nodiscard]] double now() const;
+
     ForceDimensionSettings            settings_;
     std::unique_ptr<const DrdLibrary> drd_;
-    int                               id_     = -1; ///< -1: closed
-    int                               errors_ = 0;  ///< calls in a row
-    int                               off_    = 0;  ///< exchanges at zero force since the device switched it off
+    DrdDevice                         device_;
+    bool                              isHomed_ = false; ///< its motors are on only then
+    std::optional<double>             failing_;         ///< [s] since when each exchange fails
+    std::optional<double> off_; ///< [s] since when the device, which has switched it off, is asked for no force
 };
+
+double ForceDimensionLine::now() const
+{
+    if (settings_.clock) return settings_.clock();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 void ForceDimensionLine::refuse(const std::string& what)
 {
@@ -157,17 +174,18 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
         throw Error(std::string("Force Dimension's SDK cannot be used: ") + error.what() +
                     "; install their SDK 3 and set FORCEDIM_SDK to its folder");
     }
-    errors_ = off_ = 0;
+    failing_.reset();
+    off_.reset();
     if (const int count = drd_->dhdGetDeviceCount(); count <= settings_.index)
         throw Error("Force Dimension: device number " + std::to_string(settings_.index) + " was asked for, and " +
                     std::to_string(std::max(0, count)) +
                     " are plugged in; switch it on, and see that a udev rule for vendor 1451 lets you open it");
-    id_ = drd_->dhdOpenID(char(settings_.index));
-    if (id_ < 0) refuse("device number " + std::to_string(settings_.index) + " cannot be opened");
-    const auto        id    = char(id_);
+    device_ = openDrd(*drd_, settings_.index);
+    if (device_.id < 0) refuse("device number " + std::to_string(settings_.index) + " cannot be opened");
+    const auto        id    = char(device_.id);
     const char* const name  = drd_->dhdGetSystemName(id);
     const bool        isSim = info.isSimulation;
-    const int         type  = drd_->dhdGetSystemType(id);
+    const int         type  = device_.type;
     info                    = forceDimensionInfo(type);
     info.isSimulation       = isSim;
     if (!isKnownType(type))
@@ -179,29 +197,46 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
     if (drd_->dhdGetSerialNumber(&serial, id) >= 0) info.serial = std::to_string(serial);
     info.hasGripper = info.hasGripper && drd_->dhdGetGripperAngleRad;
 
-    if (!drd_->drdIsInitialized(id) && settings_.mayInitialise) {
+    if (settings_.mayInitialise && device_.isRobot && type != kDrdFalcon && !isHomed(*drd_, device_)) {
         if (drd_->drdAutoInit(id) < 0) refuse("the arm did not find its stops");
         drd_->drdStop(true, id); // ends the movement, keeps the motors
     }
-    drd_->dhdSetMaxForce(std::min(kMostForce, info.maximumForce), id);
-    drd_->dhdSetBrakes(0, id);
-    if (drd_->dhdEnableForce(1, id) < 0) refuse("its motors cannot be switched on");
-    drd_->dhdSetGravityCompensation(1, id); // a Falcon has none, and says so
-    if (!render({})) refuse("it takes no forces");
+    if (drd_->dhdSetMaxForce) drd_->dhdSetMaxForce(std::min(kMostForce, info.maximumForce), id);
+    isHomed_ = isHomed(*drd_, device_);
+    if (isHomed_ && !switchOn()) refuse("its motors cannot be switched on");
+    if (isHomed_ && !render({})) refuse("it takes no forces");
     std::this_thread::sleep_for(std::chrono::duration<double>(kSettle));
+}
+
+/// Lets go of the brakes and switches the motors on. Only for an arm that knows where it is: the compensation of gravity
+/// pushes by what the encoders say.
+bool ForceDimensionLine::switchOn() noexcept
+{
+    const auto id = char(device_.id);
+    drd_->dhdSetBrakes(0, id);
+    const bool isOn = drd_->dhdEnableForce(1, id) >= 0;
+    drd_->dhdSetGravityCompensation(1, id); // a Falcon has none, and says so
+    return isOn;
+}
+
+void ForceDimensionLine::switchOff() noexcept
+{
+    static_cast<void>(render({}));
+    drd_->dhdSetGravityCompensation(0, char(device_.id));
+    drd_->dhdEnableForce(0, char(device_.id));
 }
 
 bool ForceDimensionLine::render(const glm::dvec3& force) noexcept
 {
     const glm::dvec3 f      = toTheirs(force);
-    const int        result = drd_->dhdSetForceAndTorqueAndGripperForce(f.x, f.y, f.z, 0, 0, 0, 0, char(id_));
+    const int        result = drd_->dhdSetForceAndTorqueAndGripperForce(f.x, f.y, f.z, 0, 0, 0, 0, char(device_.id));
     return result >= 0; // 2: the motors are saturated and give less
 }
 
 /// \return 0: a new sample; 1: the same again; below 0: an error
 int ForceDimensionLine::readHand(LineSample& sample) noexcept
 {
-    const auto id = char(id_);
+    const auto id = char(device_.id);
     glm::dvec3 place{}, speed{};
     double     turn[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
     double     angle      = 0;
@@ -217,13 +252,13 @@ int ForceDimensionLine::readHand(LineSample& sample) noexcept
     return 0;
 }
 
-/// Reads what the device says of itself. A force that it has switched off by itself is switched on again once it was
-/// asked for none for a while; one that somebody has switched off is not.
+/// Reads what the device says of itself. Its motors go on once it knows where its arm is. A force that it has switched
+/// off by itself is switched on again once it was asked for none for a while; one that somebody has switched off is not.
 /// \return false if it says nothing
 bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) noexcept
 {
-    const auto                  id = char(id_);
-    std::array<int, kDrdStatus> status{};
+    const auto id = char(device_.id);
+    DrdStatus  status{};
     status[kPower] = status[kConnected] = 1;
     if (drd_->dhdGetStatus(status.data(), id) < 0) return false;
     if (status[kConnected] == 0) {
@@ -231,40 +266,47 @@ bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) 
         sample.words = "the device was unplugged or switched off";
         return true;
     }
-    sample.homed      = status[kReset] == 0 && drd_->drdIsInitialized(id);
-    sample.words      = reasonOf(status);
+    const bool wasHomed = std::exchange(isHomed_, isHomed(*drd_, device_, status));
+    if (isHomed_ && !wasHomed) switchOn();
+    if (!isHomed_ && wasHomed) switchOff();
+    sample.homed      = isHomed_;
+    sample.words      = reasonOf(status, isHomed_ && wasHomed); // of before they were switched on
     sample.fault      = *sample.words ? DeviceFault::ownWatchdog : DeviceFault::none;
-    const bool mayTry = sample.fault != DeviceFault::none && !isWanted(status[kForceOff]) && !order.enable;
-    off_              = mayTry ? off_ + 1 : 0;
-    if (off_ < settings_.exchangesToTry) return true;
-    off_ = 0;
-    drd_->dhdSetBrakes(0, id);
-    drd_->dhdEnableForce(1, id);
+    const bool mayTry = sample.fault != DeviceFault::none && isHomed_ && !isWanted(status[kForceOff]) && !order.enable;
+    if (!mayTry) off_.reset();
+    if (mayTry && now() - *(off_ = off_.value_or(now())) >= settings_.restToTry) {
+        off_.reset();
+        switchOn();
+    }
     return true;
 }
 
 void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) noexcept
 {
-    if (id_ < 0) return;
-    const bool isTaken = render(order.force);
+    if (device_.id < 0) return;
+    const bool isTaken = !isHomed_ || render(order.force);
     const int  isRead  = readHand(sample);
     sample.news        = isRead == 0 ? LineNews::sample : LineNews::none;
     const bool isTold  = readStatus(order, sample);
-    errors_            = isTaken && isRead >= 0 && isTold ? 0 : errors_ + 1;
-    if (errors_ <= settings_.mostErrors || isFinal(sample.fault)) return;
+    if (isTaken && isRead >= 0 && isTold)
+        failing_.reset();
+    else if (!failing_)
+        failing_ = now();
+    const double past = failing_ ? now() - *failing_ : 0;
+    if (past < kDeaf || isFinal(sample.fault)) return;
     static_cast<void>(render({})); // the device may still hear
-    drd_->dhdStop(char(id_));
+    drd_->dhdStop(char(device_.id));
+    if (past < settings_.mostErrors) return;
     sample.fault = DeviceFault::linkLost;
     sample.words = "each call of Force Dimension's library fails; see its cable, and plug it in again";
 }
 
 void ForceDimensionLine::close() noexcept
 {
-    if (id_ < 0) return;
+    if (device_.id < 0) return;
     static_cast<void>(render({}));
-    drd_->dhdStop(char(id_));
-    drd_->dhdClose(char(id_));
-    id_ = -1;
+    drd_->dhdStop(char(device_.id));
+    closeDrd(*drd_, device_);
 }
 
 // --- the record
@@ -280,16 +322,18 @@ std::vector<DeviceListing> list(HidSystem& /*hid*/)
     std::vector<DeviceListing> devices;
     for (int n = 0; n < drd->dhdGetDeviceCount(); ++n) {
         DeviceListing listing{.path = std::to_string(n)};
-        if (const int id = drd->dhdOpenID(char(n)); id >= 0) {
-            const char* name = drd->dhdGetSystemName(char(id));
+        if (DrdDevice device = openDrd(*drd, n); device.id >= 0) {
+            const char* name = drd->dhdGetSystemName(char(device.id));
             listing.model    = std::string("Force Dimension ") + (name ? name : "device");
             listing.usable   = true;
-            listing.answers  = true;
-            if (!drd->drdIsInitialized(char(id))) {
-                listing.why  = "it has not been reset";
-                listing.help = "press its RESET button, or use " + std::string(kForceDimensionInit.flag);
+            listing.answers  = isHomed(*drd, device);
+            if (!listing.answers) { // and no rate is measured of it
+                listing.why  = device.type == kDrdFalcon ? "it is not homed" : "it has not been reset";
+                listing.help = device.type == kDrdFalcon
+                                   ? "pull its grip all the way out, then push it all the way in"
+                                   : "press its RESET button, or use " + std::string(kForceDimensionInit.flag);
             }
-            drd->dhdClose(char(id));
+            closeDrd(*drd, device);
         } else {
             const char* why = drd->dhdErrorGetLastStr();
             listing.model   = "Force Dimension device";
@@ -362,9 +406,10 @@ HapticDeviceInfo forceDimensionInfo(int type)
     info.maximumDamping   = row.damping;
     info.buttons          = 8;
     info.needsHoming      = true;
-    info.homing           = "press its RESET button, or start again with --forcedimension-init, hands off";
-    info.rotates          = row.rotates;
-    info.hasGripper       = row.grips;
+    info.homing =
+        type == kDrdFalcon ? "" : "press its RESET button, or start again with --forcedimension-init, hands off";
+    info.rotates    = row.rotates;
+    info.hasGripper = row.grips;
     return info;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -16,10 +17,12 @@ inline constexpr DeviceOption kForceDimensionInit{
     DeviceOption::Kind::flag};
 
 struct ForceDimensionSettings {
-    int  index          = 0;     ///< of the device, as the library counts them
-    bool mayInitialise  = false; ///< the arm may move by itself when it is opened
-    int  mostErrors     = 20;    ///< calls in a row that fail, after which the link is lost
-    int  exchangesToTry = 500;   ///< exchanges at zero force after which forces are switched on again
+    int    index         = 0;     ///< of the device, as the library counts them
+    bool   mayInitialise = false; ///< the arm may move by itself when it is opened
+    double mostErrors    = 75e-3; ///< [s] of calls that all fail, after which the link is lost
+    double restToTry     = 0.5;   ///< [s] at zero force after which forces are switched on again
+
+    std::function<double()> clock{}; ///< [s] of a clock that never goes back; empty: the machine's
 };
 
 /// Makes the conversation with one device. The library is loaded by open().

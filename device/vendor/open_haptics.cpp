@@ -71,6 +71,19 @@ const char* wordsOf(unsigned code) noexcept
     }
 }
 
+/// Returns whether the link is lost by an error.
+bool isEnd(unsigned code) noexcept
+{
+    return code == kHdLine || code == kHdFault || code == kHdLicence;
+}
+
+/// Returns how bad an error is: 0 none, 1 it changes nothing, 2 it takes the force, 3 it ends the link.
+int rankOf(unsigned code) noexcept
+{
+    if (isEnd(code)) return 3;
+    return wordsOf(code) ? 2 : code != 0 ? 1 : 0;
+}
+
 class OpenHapticsLine : public DeviceLine {
 public:
     explicit OpenHapticsLine(OpenHapticsSettings settings) : settings_(std::move(settings)) {}
@@ -82,11 +95,12 @@ public:
     bool drive(const std::function<void()>& turn) override;
 
 private:
-    void               describe(HapticDeviceInfo& info);
-    void               calibrate() noexcept;
-    void               readHand(LineSample& sample) noexcept;
-    void               judge(unsigned code, const LineOrder& order, LineSample& sample) noexcept;
-    [[nodiscard]] bool waitFor(double seconds, const std::function<bool()>& done) const;
+    void                   describe(HapticDeviceInfo& info);
+    void                   calibrate() noexcept;
+    void                   readHand(LineSample& sample) noexcept;
+    [[nodiscard]] unsigned worstError() noexcept;
+    void                   judge(unsigned code, const LineOrder& order, LineSample& sample) noexcept;
+    [[nodiscard]] bool     waitFor(double seconds, const std::function<bool()>& done) const;
 
     OpenHapticsSettings              settings_;
     std::unique_ptr<const HdLibrary> hd_;
@@ -109,7 +123,7 @@ void OpenHapticsLine::open(HapticDeviceInfo& info)
     }
     looked_ = off_ = 0;
     refused_       = nullptr;
-    static_cast<void>(hd_->hdGetError()); // one of before
+    static_cast<void>(worstError()); // of before
     device_             = hd_->hdInitDevice(settings_.name.empty() ? nullptr : settings_.name.c_str());
     const HdError error = hd_->hdGetError();
     if (device_ == kHdNoDevice || error.code != 0) {
@@ -154,11 +168,20 @@ void OpenHapticsLine::describe(HapticDeviceInfo& info)
 
 bool OpenHapticsLine::drive(const std::function<void()>& turn)
 {
-    beat_       = &newBeat();
-    beat_->turn = turn;
-    scheduled_  = hd_->hdScheduleAsynchronous(beat, beat_, kPriority);
-    hd_->hdStartScheduler();
-    return true;
+    beat_                = &newBeat();
+    beat_->turn          = turn;
+    scheduled_           = hd_->hdScheduleAsynchronous(beat, beat_, kPriority);
+    const auto isRefusal = [](unsigned found) { return found != 0 && !wordsOf(found); }; // not of a force
+    unsigned   code      = worstError();
+    if (!isRefusal(code)) {
+        hd_->hdStartScheduler();
+        code = worstError();
+    }
+    if (!isRefusal(code)) return true;
+    const char* why = hd_->hdGetErrorString(code);
+    close();
+    throw Error(std::string("OpenHaptics: its scheduler does not start: ") + (why ? why : "unknown error") +
+                "; end other programs that use the device, and see its cable");
 }
 
 /// Looks from time to time whether a device that is not calibrated can be or is by now, and whether one that was still
@@ -201,11 +224,25 @@ void OpenHapticsLine::readHand(LineSample& sample) noexcept
     sample.orientation = glm::quat_cast(turn);
 }
 
+/// Takes all errors that the library has kept, and returns the worst; 0 if there is none. It gives one at each call, and
+/// several may come between two exchanges.
+unsigned OpenHapticsLine::worstError() noexcept
+{
+    constexpr int kMostKept = 100; // a library that never says that there are no more must not hold the exchange
+    unsigned      worst     = 0;
+    for (int n = 0; n < kMostKept; ++n) {
+        const unsigned code = hd_->hdGetError().code;
+        if (code == 0) break;
+        if (rankOf(code) >= rankOf(worst)) worst = code;
+    }
+    return worst;
+}
+
 /// Turns an error of the library into a fault. A force that it refused is switched on again once it was asked for none
 /// for a while.
 void OpenHapticsLine::judge(unsigned code, const LineOrder& order, LineSample& sample) noexcept
 {
-    if (code == kHdLine || code == kHdFault || code == kHdLicence) {
+    if (isEnd(code)) {
         sample.fault = DeviceFault::linkLost;
         sample.words = code == kHdLicence ? "OpenHaptics' licence is no longer valid"
                                           : "the device no longer answers; see its cable and its light";
@@ -236,7 +273,7 @@ void OpenHapticsLine::exchange(const LineOrder& order, LineSample& sample) noexc
     readHand(sample);
     render(order.force);
     hd_->hdEndFrame(device_);
-    judge(hd_->hdGetError().code, order, sample);
+    judge(worstError(), order, sample);
     calibrate();
     if (!isFinal(sample.fault)) return;
     hd_->hdBeginFrame(device_); // the device may still hear

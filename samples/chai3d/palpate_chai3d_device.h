@@ -12,17 +12,26 @@
 //     chai3d::cHapticDeviceHandler handler;
 //     chai3d::cGenericHapticDevicePtr theirs;
 //     handler.getDevice(theirs, 0);
-//     const auto device = palp::makeChai3dDevice(theirs);
+//     const auto device = palp::makeChai3dDevice(theirs, palp::Chai3dCalibration::mayMove); // hands off until it rests
 //     device->open();                  // then as any HapticDevice, such as in SessionParts::device
 //
+// CHAI3D's calibrate() lets an omega, delta or sigma that was not reset find its stops: the arm moves by itself,
+// unannounced. So open() calls it only where you say that it may, and have told whoever holds the grip. Without it CHAI3D
+// does not say whether the arm knows where it is: reset it before.
 // Its calls may block, so they are made on a thread of the driver's own. Forces reach it through the governor alone, and
 // only while a servo renews them: LineDevice sees to that. Torques and the force of a gripper stay zero.
 namespace palp {
 
+/// Whether open() may let an arm find its stops by itself.
+enum class Chai3dCalibration { isDone, mayMove };
+
 /// The conversation with one of CHAI3D's devices.
 class Chai3dLine : public DeviceLine {
 public:
-    explicit Chai3dLine(chai3d::cGenericHapticDevicePtr device) : device_(std::move(device)) {}
+    Chai3dLine(chai3d::cGenericHapticDevicePtr device, Chai3dCalibration calibration)
+        : device_(std::move(device)), calibration_(calibration)
+    {
+    }
     ~Chai3dLine() override { close(); }
 
     void open(HapticDeviceInfo& info) override
@@ -30,9 +39,10 @@ public:
         if (!device_) throw Error("CHAI3D: there is no device; ask cHapticDeviceHandler for one that is plugged in");
         if (!device_->open())
             throw Error("CHAI3D: " + info.model + " cannot be opened; is it plugged in, and used by no other program?");
-        isOpen_ = true;
-        failed_ = 0;
-        if (device_->calibrate() && render({})) return;
+        isOpen_                 = true;
+        failed_                 = 0;
+        const bool isCalibrated = calibration_ == Chai3dCalibration::isDone || device_->calibrate();
+        if (isCalibrated && render({})) return;
         close();
         throw Error("CHAI3D: " + info.model + " cannot be calibrated, or takes no forces");
     }
@@ -41,7 +51,7 @@ public:
     {
         if (!isOpen_) return;
         const bool isGood = render(order.force) && readHand(sample);
-        sample.homed      = true; // calibrate() has said so
+        sample.homed      = true; // calibrate() has said so, or the user
         sample.news       = isGood ? LineNews::sample : LineNews::none;
         failed_           = isGood ? 0 : failed_ + 1;
         if (failed_ <= kMostFailures) return;
@@ -83,6 +93,7 @@ private:
     }
 
     chai3d::cGenericHapticDevicePtr device_;
+    Chai3dCalibration               calibration_;
     bool                            isOpen_ = false;
     int                             failed_ = 0; ///< exchanges in a row
 };
@@ -103,12 +114,14 @@ private:
 }
 
 /// Makes one of Palpate's devices of one of CHAI3D's; HapticDevice::open() then opens it.
-/// \param device  used by nothing else while it is open
+/// \param device       used by nothing else while it is open
+/// \param calibration  whether the arm may move by itself when it is opened, or knows already where it is
 [[nodiscard]] inline std::unique_ptr<HapticDevice> makeChai3dDevice(chai3d::cGenericHapticDevicePtr device,
+                                                                    Chai3dCalibration               calibration,
                                                                     const LineSettings&             settings = {})
 {
     const HapticDeviceInfo info = device ? chai3dInfo(device->getSpecifications()) : HapticDeviceInfo{};
-    return std::make_unique<LineDevice>(std::make_unique<Chai3dLine>(std::move(device)), info, settings);
+    return std::make_unique<LineDevice>(std::make_unique<Chai3dLine>(std::move(device), calibration), info, settings);
 }
 
 } // namespace palp

@@ -4,15 +4,18 @@
 
 Subscribes to `hand` (geometry_msgs/PoseStamped, [m] in the frame of the scene's cloud, stamped when it was measured) and
 publishes `force` (geometry_msgs/WrenchStamped [N]) for each pose, with the pose's header. It publishes zero once poses have
-been missing for 50 ms; a driver should let go by itself as soon, because a node can die.
+been missing for 50 ms, and when it ends; a driver should let go by itself as soon, because a node can die.
 """
 
 import math
+import signal
+import time
 
 import palpate
 import rclpy
 from geometry_msgs.msg import PoseStamped, WrenchStamped
 from rclpy.node import Node
+from rclpy.signals import SignalHandlerOptions
 
 SMOOTHING = 5e-3  # time constant of the velocity [s]
 SILENCE = 50e-3   # between poses [s]
@@ -34,22 +37,32 @@ class PalpateNode(Node):
         return 1e-9 * self.get_clock().now().nanoseconds
 
     def on_hand(self, pose):
-        time = pose.header.stamp.sec + 1e-9 * pose.header.stamp.nanosec
+        try:
+            self.answer(pose)
+        except BaseException:
+            self.let_go()
+            raise
+
+    def answer(self, pose):
+        stamp = pose.header.stamp.sec + 1e-9 * pose.header.stamp.nanosec
         position = (pose.pose.position.x, pose.pose.position.y, pose.pose.position.z)
         self.heard = self.now()
-        if self.time < time < math.inf and all(map(math.isfinite, position)):  # if not, step() says so, with zero force
-            dt = time - self.time
+        if self.time < stamp < math.inf and all(map(math.isfinite, position)):  # if not, step() says so, with zero force
+            dt = stamp - self.time
             share = dt / (dt + SMOOTHING) if math.isfinite(dt) else 0
             self.velocity = tuple(v + share * ((p - q) / dt - v) for v, p, q in zip(self.velocity, position, self.position))
-            self.time, self.position = time, position
-        answer = self.session.step(time, position, self.velocity, age=max(0.0, self.heard - time))
+            self.time, self.position = stamp, position
+        answer = self.session.step(stamp, position, self.velocity, age=max(0.0, self.heard - stamp))
         self.publish(pose.header, answer.force)
         if answer.stopped:
             self.get_logger().warning(self.session.words, throttle_duration_sec=2.0)
 
     def on_timer(self):
         if self.now() - self.heard > SILENCE:
-            self.publish(WrenchStamped().header, (0.0, 0.0, 0.0))
+            self.let_go()
+
+    def let_go(self):
+        self.publish(WrenchStamped().header, (0.0, 0.0, 0.0))
 
     def publish(self, header, force):
         message = WrenchStamped(header=header)
@@ -57,14 +70,27 @@ class PalpateNode(Node):
         self.publisher.publish(message)
 
 
+    def end(self):
+        for _ in range(3):  # one may be lost
+            self.let_go()
+            time.sleep(5e-3)
+        self.session.close()
+        self.destroy_node()
+
+
 def main():
-    rclpy.init()
-    node = PalpateNode()
+    rclpy.init(signal_handler_options=SignalHandlerOptions.NO)  # its own would end the context before zero is published
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C
+    node = None
     try:
+        node = PalpateNode()
         rclpy.spin(node)
+    except KeyboardInterrupt:
+        pass
     finally:
-        node.session.close()
-        node.destroy_node()
+        if node:
+            node.end()
+        rclpy.shutdown()
 
 
 if __name__ == "__main__":

@@ -1,6 +1,8 @@
 #pragma once
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <stdexcept>
 #include <string>
@@ -44,6 +46,24 @@ public:
         palpate_session_destroy(std::exchange(session_, session)); // of an earlier init()
     }
 
+    /// Passes on the device's buttons, bit i for button i, from any thread. SOFA's class has no place for them, so your
+    /// plugin takes them from its driver: the first one, held for 20 ms, clears a fault of the governor.
+    void setButtons(std::uint32_t buttons) noexcept { buttons_ = buttons; }
+
+    /// Returns whether the governor has stopped the force until the first button is held. From any thread.
+    [[nodiscard]] bool isStopped() const noexcept { return isStopped_; }
+
+    /// Returns why it has stopped the force, as a sentence for a person; empty if it has not. From any thread but the
+    /// driver's.
+    [[nodiscard]] std::string words()
+    {
+        if (!isStopped_) return {}; // a tick that finds the gate closed has no force, so only where there is none
+        char                  text[256]{};
+        const std::lock_guard gate(gate_);
+        if (session_) palpate_session_words(session_, text, sizeof text);
+        return text;
+    }
+
     void computeForce(SReal x, SReal y, SReal z, SReal /*u*/, SReal /*v*/, SReal /*w*/, SReal /*q*/, SReal& fx,
                       SReal& fy, SReal& fz) override
     {
@@ -57,7 +77,9 @@ public:
         auto                                answer = PALPATE_INIT(palpate_answer);
         move(place, now.count());
         for (int k = 0; k < 3; ++k) hand.position[k] = place[k], hand.velocity[k] = velocity_[k];
+        hand.buttons = buttons_;
         palpate_session_step(session_, now.count(), &hand, &answer); // a place that is not finite: zero force
+        isStopped_ = (answer.flags & PALPATE_STOPPED) != 0;
         fx = answer.force[0], fy = answer.force[1], fz = answer.force[2];
     }
 
@@ -89,6 +111,8 @@ private:
     }
 
     std::mutex                                  gate_;
+    std::atomic<std::uint32_t>                  buttons_{0};
+    std::atomic<bool>                           isStopped_{false};
     palpate_session*                            session_ = nullptr;
     double                                      metres_  = 0; ///< in a unit of the driver
     const std::chrono::steady_clock::time_point begin_   = std::chrono::steady_clock::now();

@@ -15,9 +15,26 @@ is palpate_force_feedback.h beside this file.
 """
 
 import math
+import threading
 import time
+import weakref
 
 import Sofa.Core
+
+SILENCE = 50e-3  # [s] after a step, after which its force ends
+
+
+def watch(touch, stepped):
+    """Ends the force once there was no step for 50 ms: the animation pauses or is slow, and the driver would hold it."""
+    while True:
+        is_fresh = stepped.wait(SILENCE)
+        stepped.clear()
+        own = touch()
+        if own is None:
+            return
+        if not is_fresh:
+            own.let_go()
+        del own
 
 
 class PalpateForceFeedback(Sofa.Core.Controller):
@@ -31,8 +48,21 @@ class PalpateForceFeedback(Sofa.Core.Controller):
         self.session = object.session(maximum_force=driver.maxInputForceFeedback.value,
                                       maximum_stiffness=maximum_stiffness)
         self.last = None  # time [s] and position [m]
+        self.stepped = threading.Event()
+        threading.Thread(target=watch, args=(weakref.ref(self), self.stepped), daemon=True).start()
+
+    def let_go(self):
+        self.driver.inputForceFeedback.value = [0.0, 0.0, 0.0]
 
     def onAnimateBeginEvent(self, event):
+        try:
+            self.step()
+        except BaseException:
+            self.let_go()
+            raise
+
+    def step(self):
+        self.stepped.set()
         now, position = time.monotonic(), [self.metres * float(x) for x in self.driver.positionDevice.value[:3]]
         before, place = self.last or (now, position)
         velocity = [(p - q) / (now - before) if now > before else 0.0 for p, q in zip(position, place)]

@@ -69,6 +69,7 @@ static class PalpateNative
     [DllImport(Library)] public static extern void palpate_object_destroy(IntPtr made);
     [DllImport(Library)] public static extern int palpate_session_create(IntPtr made, ref palpate_session_settings settings, out IntPtr session);
     [DllImport(Library)] public static extern int palpate_session_step(IntPtr session, double time, ref palpate_hand hand, ref palpate_answer answer);
+    [DllImport(Library)] public static extern int palpate_session_words(IntPtr session, [Out] byte[] text, UIntPtr size);
     [DllImport(Library)] public static extern int palpate_session_deformed(IntPtr session, [Out] double[] xyz, UIntPtr count, ref ulong sequence);
     [DllImport(Library)] public static extern void palpate_session_destroy(IntPtr session);
 
@@ -94,6 +95,7 @@ public sealed class PalpateObject : MonoBehaviour
 
     readonly object gate = new object(); // held by a tick, and by the end
     IntPtr          session;
+    volatile bool   stopped;
     Mesh            mesh;
     double[]        bent; // null: the mesh was too coarse to touch, so points on its faces are touched in place of its own
     Vector3[]       drawn;
@@ -140,18 +142,37 @@ public sealed class PalpateObject : MonoBehaviour
 
     /// Runs one tick and returns the force on the hand [N]: call it a thousand times a second from one thread, the device's.
     /// time [s] rises; position [m] and velocity [m/s] are in the mesh's frame. Allocates nothing.
-    public Vector3 Step(double time, Vector3 position, Vector3 velocity, uint buttons = 0)
+    /// buttons: bit i for the device's button i; the first one, held for 20 ms, clears a fault of the governor.
+    /// age [s] of the position: one that is repeated until a tracker's next grows older, or that next one may count as a jump.
+    /// absent: the device has no position now; no force flows.
+    public Vector3 Step(double time, Vector3 position, Vector3 velocity, uint buttons = 0, double age = 0, bool absent = false)
     {
         var hand = new PalpateNative.palpate_hand {
             size = PalpateNative.SizeOf<PalpateNative.palpate_hand>(), position = ThreeOf(position), velocity = ThreeOf(velocity),
-            buttons = buttons
+            buttons = buttons, age = age, absent = absent ? 1u : 0u
         };
         var answer = new PalpateNative.palpate_answer { size = PalpateNative.SizeOf<PalpateNative.palpate_answer>() };
         lock (gate) {
             if (session == IntPtr.Zero) return new Vector3(0, 0, 0);
             PalpateNative.palpate_session_step(session, time, ref hand, ref answer);
         }
+        const uint kStopped = 2;
+        stopped = (answer.flags & kStopped) != 0;
         return new Vector3((float)answer.force.x, (float)answer.force.y, (float)answer.force.z);
+    }
+
+    /// Whether the governor has stopped the force until the first button is held. For any thread.
+    public bool IsStopped { get { return stopped; } }
+
+    /// Why the last tick had no force, as a sentence for a person; empty while forces flow. For any thread, but a tick waits.
+    public string Words()
+    {
+        var text = new byte[256];
+        lock (gate) {
+            if (session == IntPtr.Zero) return "";
+            PalpateNative.Check(PalpateNative.palpate_session_words(session, text, (UIntPtr)text.Length));
+        }
+        return System.Text.Encoding.UTF8.GetString(text).TrimEnd('\0');
     }
 
     void Update()

@@ -19,6 +19,7 @@
 #include <fcntl.h>
 #include <glm/geometric.hpp>
 #include <poll.h>
+#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <termios.h>
 #include <unistd.h>
@@ -381,6 +382,26 @@ TEST(BridgeLines, ASerialPortIsALineLikeUsbAndUnplugged)
     } catch (const HidRefused& refused) {
         EXPECT_NE(refused.help.find("plugged in"), std::string::npos) << refused.what();
     }
+}
+
+TEST(BridgeLines, ASerialPortIsForOneProgramAlsoWhereItAsksForNoLock)
+{
+    std::array<char, 64> node{};
+    const int            master = openTerminal(node);
+    const auto           isShut = [&] { // to all but root
+        const int fd     = ::open(node.data(), O_RDWR | O_NOCTTY | O_CLOEXEC | O_NONBLOCK);
+        int       isOnly = fd < 0 && errno == EBUSY ? 1 : 0;
+        if (fd >= 0) ioctl(fd, TIOCGEXCL, &isOnly);
+        if (fd >= 0) close(fd);
+        return isOnly != 0;
+    };
+    EXPECT_FALSE(isShut());
+    {
+        const auto line = openBridgeLine({BridgeLine::Kind::serial, node.data(), 0});
+        EXPECT_TRUE(isShut());
+    }
+    EXPECT_FALSE(isShut()) << "let go again";
+    close(master);
 }
 
 TEST(BridgeLines, HalfAReportIsNotAwaitedTwice)

@@ -71,6 +71,17 @@ TEST(DeviceList, SaysWhatIsKnownOfASimulatedForce)
     EXPECT_EQ(devices.at(1).calibration, "");
 }
 
+TEST(DeviceList, WhereNobodyNamesOneTheFirstThatCanBeOpenedIsTaken)
+{
+    FakeHidSystem hid;
+    hid.plug(listing("/dev/hidraw1", 0x256f, 0xc635, 1, 8)).refusal = "no permission";
+    EXPECT_EQ(kSpaceMouseRecord.make({.hid = hid})->info().path, "/dev/hidraw1") << "whose opening then says why not";
+    FakeHidDevice& usable = hid.plug(listing("/dev/hidraw2", 0x256f, 0xc62e, 1, 8));
+    EXPECT_EQ(kSpaceMouseRecord.make({.hid = hid})->info().path, "/dev/hidraw2");
+    EXPECT_EQ(usable.openPorts(), 0) << "let go again";
+    EXPECT_EQ(kSpaceMouseRecord.make({.hid = hid, .path = "/dev/hidraw1"})->info().path, "/dev/hidraw1");
+}
+
 TEST(DeviceList, SaysWhyADeviceCannotBeUsed)
 {
     FakeHidSystem hid;

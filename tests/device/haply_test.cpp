@@ -305,7 +305,7 @@ TEST(HaplyDevice, WhatTheServiceDoesToAForceIsSaid)
     Bench bench({.forceGate = 0.3, .forceScale = 0.5});
     bench.device->open();
     const std::string note = bench.device->info().note;
-    EXPECT_NE(note.find("a force gate of 0.3"), std::string::npos) << note;
+    EXPECT_EQ(note.find("gate"), std::string::npos) << "which acts on a force that oscillates only: " << note;
     EXPECT_NE(note.find("a force scale of 0.5"), std::string::npos) << note;
     bench.device->close();
     Bench neutral;
@@ -313,6 +313,9 @@ TEST(HaplyDevice, WhatTheServiceDoesToAForceIsSaid)
     EXPECT_EQ(neutral.device->info().note, "");
     EXPECT_NE(describeFilters({}, {}).find("does not say"), std::string::npos) << "unknown is not neutral";
     EXPECT_EQ(describeFilters({}, 1), "");
+    EXPECT_NE(describeGate({.forceGate = 0.3}).find("0.3: it lessens a force while"), std::string::npos);
+    EXPECT_EQ(describeGate({.forceGate = 0}), "");
+    EXPECT_EQ(describeGate({}), "");
 }
 
 TEST(HaplyDevice, NotCalibratedIsNotHomedAndHasNoForce)

@@ -70,6 +70,18 @@ TEST(SpaceMouse, TheUdevRulesOpenItsModelsAndNoOtherProductOfTheirMakers)
     EXPECT_EQ(opened, 2);
 }
 
+TEST(SpaceMouse, TheUdevRulesOpenWhatIsThereByBluetooth)
+{
+    const std::string rules = contentsOf(PALPATE_FALCON_RULES);
+    for (unsigned product = 0; product <= 0xFFFF; ++product) {
+        const SpaceMouseModel* model = spaceMouseModel({.vendor = 0x256f, .product = std::uint16_t(product)});
+        std::array<char, 32>   name{}; // as the kernel calls it
+        std::snprintf(name.data(), name.size(), "0005:256F:%04X.*", product);
+        const bool isByBluetooth = model && std::string_view(model->name).find("Bluetooth") != std::string_view::npos;
+        EXPECT_EQ(rules.find(name.data()) != std::string::npos, isByBluetooth) << name.data();
+    }
+}
+
 TEST(SpaceMouseReport, TheOlderFormsFillThreeAxesEach)
 {
     SpaceMouseCounts counts;

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include <dlfcn.h>
 #include <glm/geometric.hpp>
@@ -23,6 +24,8 @@ namespace {
 
 constexpr double kTick = 1e-3;  // [s]
 constexpr double kZero = 30e-3; // [s] by which a force has ended, whatever happens
+
+double virtualTime = 0; // [s] of the lines' clock
 
 /// Points the loader at a folder, and back at nothing.
 struct Environment {
@@ -43,12 +46,14 @@ FakeSdk& registersOf(const std::string& library)
     for (int axis = 0; axis < 3; ++axis) sdk.position[axis] = sdk.velocity[axis] = sdk.force[axis] = 0;
     sdk.isPresent = sdk.isReady = true;
     sdk.type                    = 33;
-    sdk.hasPower                = true;
+    sdk.hasPower = sdk.knowsDrd = true;
+    sdk.isRobot = sdk.isBalanced = false;
+    sdk.areBrakesOn              = true;
     sdk.isBroken = sdk.isLost = false;
     sdk.isForceOn = sdk.isSame = sdk.isOutOfNumbers = sdk.callsLate = false;
     sdk.error = sdk.status = sdk.opened = sdk.closed = sdk.enabled = sdk.calibrated = sdk.calls = sdk.lateCallbacks =
-        sdk.openError                                                                           = 0;
-    sdk.callbackThreads                                                                         = 1;
+        sdk.openError = sdk.startError = sdk.nextError = 0;
+    sdk.callbackThreads                                = 1;
     return sdk;
 }
 
@@ -74,9 +79,9 @@ struct Maker {
 
 constexpr Maker kMakers[] = {
     {"ForceDimension", "FORCEDIM_SDK", PALPATE_FAKE_SDK "/libdrd.so.3", "dhdSetGravityCompensation",
-     [] { return makeForceDimensionLine({.exchangesToTry = 50}); }, [] { return forceDimensionInfo(33); },
-     [](const glm::dvec3& v) { return glm::dvec3(v.y, v.z, v.x); }, 1, &kForceDimensionRecord, 1,
-     DeviceFault::linkLost},
+     [] { return makeForceDimensionLine({.restToTry = 0.05, .clock = [] { return virtualTime; }}); },
+     [] { return forceDimensionInfo(33); }, [](const glm::dvec3& v) { return glm::dvec3(v.y, v.z, v.x); }, 1,
+     &kForceDimensionRecord, 1, DeviceFault::linkLost},
     {"OpenHaptics", "OPENHAPTICS", PALPATE_FAKE_SDK "/libHD.so", "hdUnschedule",
      [] { return makeOpenHapticsLine({.exchangesToTry = 50, .exchangesToLook = 20}); },
      [] { return openHapticsInfo("Touch"); }, [](const glm::dvec3& v) { return v; }, 1e-3, &kOpenHapticsRecord, 0x302,
@@ -92,7 +97,8 @@ protected:
     void run(double seconds, const GovernedForce& force)
     {
         for (const double end = now + seconds - kTick / 2; now < end; now += kTick) {
-            state = device.exchange(force, now);
+            virtualTime = now;
+            state       = device.exchange(force, now);
             if (force_() > 0) pushed = now;
         }
     }
@@ -174,6 +180,8 @@ TEST_P(MakersLibraries, AnOldLibraryIsRefusedByWhatItLacks)
     } catch (const Error& error) {
         EXPECT_NE(std::string(error.what()).find(std::string("lacks ") + GetParam().lacks), std::string::npos)
             << error.what();
+        EXPECT_EQ(std::string(error.what()).find("dhdSetMaxForce"), std::string::npos)
+            << "version 3.7 works without it: " << error.what();
     }
 }
 
@@ -306,6 +314,53 @@ TEST_P(ForceDimension, WhatStopsTheForceIsSaidAndItComesBackByItself)
     }
 }
 
+/// As older firmware has it, which tells no cause.
+TEST_P(ForceDimension, AForceThatIsOffWithoutACauseIsAFaultAndComesBack)
+{
+    device.open();
+    run(0.1, push);
+    const double since = now;
+    sdk.isForceOn      = false;
+    run(0.03, push);
+    EXPECT_EQ(state.fault, DeviceFault::ownWatchdog);
+    EXPECT_NE(std::string(device.faultWords()).find("force is off"), std::string::npos) << device.faultWords();
+    EXPECT_LE(pushed - since, kZero);
+    run(0.3, push);
+    EXPECT_EQ(state.fault, DeviceFault::none) << "switched on again, at zero force";
+    EXPECT_TRUE(sdk.isForceOn);
+    EXPECT_GT(force_(), 1);
+}
+
+/// However many exchanges are made in that time: a library may make 1000 or 4000 a second.
+TEST_P(ForceDimension, ItsPatienceIsOneInSeconds)
+{
+    for (const int eachTick : {1, 4}) {
+        device.open();
+        run(0.1, push);
+        const auto ticks = [&](int count) {
+            const double rest = now;
+            for (int n = 0; n < count * eachTick; ++n) {
+                virtualTime = now = rest + kTick * n / eachTick;
+                state             = device.exchange(push, now);
+            }
+        };
+        sdk.status = 3;
+        ticks(45);
+        EXPECT_EQ(state.fault, DeviceFault::ownWatchdog) << eachTick;
+        EXPECT_EQ(sdk.status, 3) << "it rests for 50 ms in this test";
+        ticks(20);
+        EXPECT_EQ(sdk.status, 0) << eachTick;
+        run(0.1, push);
+        sdk.error = 1;
+        ticks(50);
+        EXPECT_NE(state.fault, DeviceFault::linkLost) << eachTick;
+        ticks(50);
+        EXPECT_EQ(state.fault, DeviceFault::linkLost) << eachTick;
+        sdk.error = 0;
+        device.close();
+    }
+}
+
 TEST_P(ForceDimension, AForceThatSomebodySwitchedOffStaysOff)
 {
     for (const auto& [cause, words] : {std::pair{1, "button"}, {4, "another program"}, {6, "dead man"}}) {
@@ -383,6 +438,63 @@ TEST_P(ForceDimension, TheArmMovesByItselfOnlyIfTheUserLetsIt)
     EXPECT_EQ(sdk.calibrated, 1);
 }
 
+/// It has no RESET button, and the library cannot move it.
+TEST_P(ForceDimension, AFalconIsHomedByHand)
+{
+    sdk.type    = 60;
+    sdk.isReady = false;
+    FakeHidSystem     hid;
+    const std::string help = kForceDimensionRecord.list(hid).at(0).help;
+    EXPECT_EQ(help.find("RESET"), std::string::npos) << help;
+    EXPECT_NE(help.find("grip all the way out"), std::string::npos) << help;
+    LineDevice falcon(makeForceDimensionLine({.mayInitialise = true}), forceDimensionInfo(60),
+                      {.pace = LinePace::caller});
+    falcon.open();
+    EXPECT_EQ(sdk.calibrated, 0);
+    EXPECT_TRUE(falcon.info().needsHoming);
+    EXPECT_EQ(falcon.info().homing, "") << "said as of a Falcon";
+}
+
+TEST_P(ForceDimension, ADeviceThatTheirRobotsLibraryRefusesIsOpenedWithoutIt)
+{
+    device.open();
+    EXPECT_TRUE(sdk.isRobot) << "the functions drd* serve no other";
+    device.close();
+    sdk.knowsDrd = false;
+    device.open();
+    run(0.1, push);
+    EXPECT_EQ(sdk.opened, 2);
+    EXPECT_TRUE(state.homed) << "its status alone says so";
+    EXPECT_GT(force_(), 1);
+    device.close();
+    EXPECT_EQ(sdk.closed, 2) << "as it was opened";
+}
+
+/// What its encoders say means nothing before: the compensation of gravity alone would push.
+TEST_P(ForceDimension, AnArmThatDoesNotKnowWhereItIsHasNoPower)
+{
+    const auto hasPower = [&] { return sdk.isForceOn || sdk.isBalanced || !sdk.areBrakesOn; };
+    sdk.isReady         = false;
+    device.open();
+    run(3, push);
+    EXPECT_FALSE(state.homed);
+    EXPECT_EQ(state.fault, DeviceFault::none) << "brakes and all: it waits for its reset";
+    EXPECT_FALSE(hasPower());
+    FakeHidSystem hid;
+    const auto    listed = kForceDimensionRecord.list(hid);
+    EXPECT_FALSE(listed.at(0).answers) << "so no rate is measured of it";
+    EXPECT_FALSE(listed.at(0).help.empty());
+    sdk.isReady = true;
+    run(0.1, push);
+    EXPECT_TRUE(sdk.isForceOn && sdk.isBalanced && !sdk.areBrakesOn);
+    EXPECT_GT(force_(), 1);
+    EXPECT_TRUE(kForceDimensionRecord.list(hid).at(0).answers);
+    sdk.isReady = false; // somebody presses its button once more
+    run(1, push);
+    EXPECT_FALSE(sdk.isForceOn || sdk.isBalanced);
+    EXPECT_EQ(force_(), 0);
+}
+
 TEST_P(ForceDimension, IsListedWithItsName)
 {
     FakeHidSystem hid;
@@ -432,6 +544,42 @@ TEST_P(OpenHaptics, ErrorsOfAForceAreSaidAndTheForceComesBack)
         EXPECT_GT(force_(), 1);
         device.close();
     }
+}
+
+/// The library keeps several and gives one at each call.
+TEST_P(OpenHaptics, OfSeveralErrorsTheWorstCounts)
+{
+    for (const auto& [first, second, fault] : {std::tuple{0x101, 0x203, DeviceFault::ownWatchdog},
+                                               {0x203, 0x302, DeviceFault::linkLost},
+                                               {0x302, 0x203, DeviceFault::linkLost}}) {
+        device.open();
+        run(0.1, push);
+        sdk.nextError = second;
+        sdk.error     = first;
+        run(kTick, push);
+        EXPECT_EQ(state.fault, fault) << first << ", " << second;
+        EXPECT_EQ(sdk.error, 0) << "none is kept for later";
+        device.close();
+    }
+}
+
+TEST_P(OpenHaptics, ASchedulerThatDoesNotStartIsASentence)
+{
+    LineDevice real(makeOpenHapticsLine(), openHapticsInfo("Touch"));
+    sdk.startError = 0x304; // late at first: an error of forces, which the exchanges judge
+    real.open();
+    real.close();
+    sdk.startError = 0x103;
+    try {
+        real.open();
+        ADD_FAILURE() << "nobody makes exchanges";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("scheduler"), std::string::npos) << error.what();
+    }
+    EXPECT_EQ(sdk.opened, sdk.closed);
+    EXPECT_EQ(real.read(0).fault, DeviceFault::closed);
+    sdk.startError = 0;
+    EXPECT_TRUE((real.open(), until(real, push, [&] { return state.fault == DeviceFault::none; })));
 }
 
 TEST_P(OpenHaptics, ACalibrationThatIsLostEndsTheForceAndABetterOneWaits)

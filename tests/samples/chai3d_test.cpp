@@ -32,7 +32,7 @@ public:
     }
     bool open() override { return ++opened, opens; }
     bool close() override { return ++closed, true; }
-    bool calibrate(bool) override { return calibrates; }
+    bool calibrate(bool) override { return ++calibrated, calibrates; }
     bool getPosition(chai3d::cVector3d& to) override { return to = place, works.load(); }
     bool getLinearVelocity(chai3d::cVector3d& to) override { return to = speed, works.load(); }
     bool getRotation(chai3d::cMatrix3d& to) override { return to = turn, works.load(); }
@@ -47,15 +47,16 @@ public:
     chai3d::cVector3d place{0.003, 0.001, 0.002}, speed{0.3, 0.1, 0.2}, force{};
     chai3d::cMatrix3d turn{};
     double            torque = 0;
-    int               opened = 0, closed = 0;
+    int               opened = 0, closed = 0, calibrated = 0;
     bool              opens = true, calibrates = true;
     std::atomic<bool> works{true};
 };
 
 struct AsOurs : ::testing::Test {
     std::shared_ptr<Theirs>       theirs = std::make_shared<Theirs>();
-    std::unique_ptr<HapticDevice> device = makeChai3dDevice(theirs, {.pace = LinePace::caller});
-    double                        now    = 0; // [s]
+    std::unique_ptr<HapticDevice> device =
+        makeChai3dDevice(theirs, Chai3dCalibration::mayMove, {.pace = LinePace::caller});
+    double now = 0; // [s]
 
     HapticState ticks(int count, const GovernedForce& force = {})
     {
@@ -141,7 +142,18 @@ TEST_F(AsOurs, WhatCannotBeOpenedIsSaid)
     EXPECT_EQ(theirs->closed, 1) << "what was opened is closed";
     theirs->calibrates = true;
     EXPECT_NO_THROW(device->open());
-    EXPECT_THROW(makeChai3dDevice(nullptr)->open(), Error);
+    EXPECT_THROW(makeChai3dDevice(nullptr, Chai3dCalibration::isDone)->open(), Error);
+}
+
+TEST_F(AsOurs, TheArmMovesByItselfOnlyWhereTheCallerSaysSo)
+{
+    device->open();
+    EXPECT_EQ(theirs->calibrated, 1);
+    device->close();
+    const auto still = makeChai3dDevice(theirs, Chai3dCalibration::isDone, {.pace = LinePace::caller});
+    still->open();
+    EXPECT_EQ(theirs->calibrated, 1);
+    EXPECT_TRUE((still->read(0.001), still->read(0.002).homed));
 }
 
 /// Our device as one of theirs, in virtual time.

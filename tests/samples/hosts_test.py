@@ -1,6 +1,8 @@
 """Runs the hosts of samples/ros2 and samples/sofa on stand-ins of ROS 2 and SOFA. Arguments: the checkout, a scratch folder."""
 
 import json
+import os
+import signal
 import sys
 import time
 import types
@@ -11,6 +13,7 @@ CHECKOUT, SCRATCH = Path(sys.argv[1]), Path(sys.argv[2])
 for folder in ("samples/sofa", "samples/ros2", "tests/samples/python_stubs"):
     sys.path.insert(0, str(CHECKOUT / folder))
 
+import numpy as np  # noqa: E402
 import palpate  # noqa: E402
 import palpate_force_feedback  # noqa: E402
 import palpate_node  # noqa: E402
@@ -35,7 +38,12 @@ class Ros2(unittest.TestCase):
         (SCRATCH / "sheet.json").write_text(json.dumps(SHEET))
         rclpy.node.parameters = {"scene": str(SCRATCH / "sheet.json"), **parameters}
         made = []
-        rclpy.spun = lambda node: (made.append(node), work(node))
+        def spun(node):
+            made.append(node)
+            self.node = node
+            work(node)
+
+        rclpy.spun = spun
         palpate_node.main()
         node = made[0]
         self.assertTrue(node.destroyed)
@@ -67,9 +75,9 @@ class Ros2(unittest.TestCase):
         node, forces = self.run_node(work, maximum_force=3.0)
         self.assertEqual({topic for topic, _ in node.published}, {"force"})
         self.assertEqual(node.published[0][1].header.frame_id, "cloud")
-        self.assertAlmostEqual(forces[-2][0], 9.199, places=6)
-        self.assertTrue(0.2 < forces[-2][1] < 2, forces[-2])
-        self.assertEqual(forces[-1][1], 0, "the hand has gone silent")
+        self.assertAlmostEqual(forces[2199][0], 9.199, places=6)
+        self.assertTrue(0.2 < forces[2199][1] < 2, forces[2199])
+        self.assertEqual(forces[2200][1], 0, "the hand has gone silent")
 
     def test_a_pose_that_is_wrong_has_no_force_and_spoils_nothing(self):
         def work(node):
@@ -83,6 +91,44 @@ class Ros2(unittest.TestCase):
 
         _, forces = self.run_node(work)
         self.assertEqual([force for _, force in forces[2200:2202]], [0, 0])
+
+    def test_its_end_is_zero_force_however_it_comes(self):
+        def press_and(end):
+            def work(node):
+                answer = types.SimpleNamespace(force=np.array([0, 0, 2.0]), stopped=False)
+                node.session.step = lambda *a, **k: answer
+                self.hear(node, 7.0, 0.0)
+                end(node)
+
+            return work
+
+        def interrupt(node):
+            raise KeyboardInterrupt
+
+        def terminate(node):
+            os.kill(os.getpid(), signal.SIGTERM)
+            time.sleep(5)
+
+        def fail(node):
+            def step(*_, **__):
+                raise palpate.Error("as a test wants it")
+
+            node.session.step = step
+            self.hear(node, 7.001, 0.0)
+
+        for end, error in ((interrupt, None), (terminate, None), (fail, palpate.Error)):
+            made = []
+            try:
+                made.append(self.run_node(press_and(end))[1])
+                self.assertIsNone(error)
+            except palpate.Error:
+                self.assertIs(error, palpate.Error)
+                made.append([(0, m.wrench.force.z) for _, m in self.node.published])
+            forces = [force for _, force in made[0]]
+            self.assertEqual(forces[0], 2)
+            self.assertEqual(set(forces[1:]), {0})
+            self.assertGreaterEqual(len(forces), 4, "several, for one may be lost")
+            self.assertFalse(rclpy.is_valid)
 
     def test_a_scene_that_is_missing_is_a_sentence(self):
         with self.assertRaisesRegex(palpate.Error, "nowhere.json"):
@@ -104,8 +150,8 @@ class Sofa(unittest.TestCase):
             self.now = 0.01 * n
             driver.positionDevice.value[2] = 100 * height(self.now)  # in centimetres
             touch.onAnimateBeginEvent({})
+            force = driver.inputForceFeedback.value
             time.sleep(0.01)
-        force = driver.inputForceFeedback.value
         # The sheet's 475 N/m are more than a tenth of 1000, which is what may be held for 10 ms; and the hand is 1 mm deep.
         self.assertAlmostEqual(force[2], 0.1, delta=0.005)
         self.assertLess(drawn.position.value[:, 2].min(), -1e-3, "some hundredths of a millimetre, in centimetres")
@@ -113,6 +159,32 @@ class Sofa(unittest.TestCase):
         driver.positionDevice.value[0] = float("nan")
         touch.onAnimateBeginEvent({})
         self.assertEqual(driver.inputForceFeedback.value, [0, 0, 0])
+
+    def test_a_force_ends_with_the_steps_and_with_one_that_fails(self):
+        driver = self.driver()
+        touch = palpate_force_feedback.PalpateForceFeedback(palpate.Object.scene(SHEET), driver)
+        touch.session = types.SimpleNamespace(step=lambda *a, **k: types.SimpleNamespace(force=np.array([0, 0, 2.0])))
+        self.assertTrue(self.becomes(driver, [0, 0, 2.0], touch))
+        self.assertTrue(self.becomes(driver, [0, 0, 0]), "the animation pauses")
+        self.assertTrue(self.becomes(driver, [0, 0, 2.0], touch), "it goes on")
+
+        def fail(*_, **__):
+            raise palpate.Error("as a test wants it")
+
+        touch.session.step = fail
+        with self.assertRaises(palpate.Error):
+            touch.onAnimateBeginEvent({})
+        self.assertEqual(driver.inputForceFeedback.value, [0, 0, 0])
+
+    def becomes(self, driver, force, touch=None):
+        """Returns whether the driver is given this force within 5 s, for a busy machine; steps are made if there is a touch."""
+        for _ in range(500):
+            if touch:
+                touch.onAnimateBeginEvent({})
+            if list(driver.inputForceFeedback.value) == force:
+                return True
+            time.sleep(0.01)
+        return False
 
 
 if __name__ == "__main__":

@@ -52,6 +52,32 @@ TEST(SofaForceFeedback, ADriversThreadIsGivenForces)
     EXPECT_EQ(forceAt(feedback, NAN), 0);
 }
 
+TEST(SofaForceFeedback, AFaultIsSaidAndTheFirstButtonClearsIt)
+{
+    PalpateForceFeedback feedback;
+    feedback.d_scene.setValue(sheetScene());
+    feedback.init();
+    const auto ticks = [&](int count) {
+        for (int n = 0; n < count; ++n) {
+            forceAt(feedback, 5);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+    };
+    ticks(50);
+    std::this_thread::sleep_for(std::chrono::milliseconds(500)); // the driver's thread stalls
+    ticks(50);
+    ASSERT_TRUE(feedback.isStopped());
+    EXPECT_NE(feedback.words().find("first button"), std::string::npos) << feedback.words();
+    for (int n = 0; n < 20 && feedback.isStopped(); ++n) { // a busy machine may stall anew
+        feedback.setButtons(1);
+        ticks(200);
+        feedback.setButtons(0);
+        ticks(10);
+    }
+    EXPECT_FALSE(feedback.isStopped());
+    EXPECT_EQ(feedback.words(), "");
+}
+
 TEST(SofaForceFeedback, ASceneThatIsMissingIsASentence)
 {
     PalpateForceFeedback feedback;

@@ -38,6 +38,8 @@ std::unique_ptr<const DrdLibrary> loadDrd()
     drd->place        = library.place();
     library.take("dhdGetSDKVersion", drd->dhdGetSDKVersion);
     library.take("dhdGetDeviceCount", drd->dhdGetDeviceCount);
+    library.take("drdOpenID", drd->drdOpenID);
+    library.take("drdClose", drd->drdClose);
     library.take("dhdOpenID", drd->dhdOpenID);
     library.take("dhdClose", drd->dhdClose);
     library.take("dhdGetSystemType", drd->dhdGetSystemType);
@@ -51,13 +53,13 @@ std::unique_ptr<const DrdLibrary> loadDrd()
     library.take("dhdSetBrakes", drd->dhdSetBrakes);
     library.take("dhdSetGravityCompensation", drd->dhdSetGravityCompensation);
     library.take("dhdSetForceAndTorqueAndGripperForce", drd->dhdSetForceAndTorqueAndGripperForce);
-    library.take("dhdSetMaxForce", drd->dhdSetMaxForce);
     library.take("dhdGetStatus", drd->dhdGetStatus);
     library.take("dhdStop", drd->dhdStop);
     library.take("dhdErrorGetLastStr", drd->dhdErrorGetLastStr);
     library.take("drdIsInitialized", drd->drdIsInitialized);
     library.take("drdAutoInit", drd->drdAutoInit);
     library.take("drdStop", drd->drdStop);
+    library.takeIfThere("dhdSetMaxForce", drd->dhdSetMaxForce);
     library.takeIfThere("dhdGetGripperAngleRad", drd->dhdGetGripperAngleRad);
     library.demandWhole("Force Dimension SDK 3");
     return drd;

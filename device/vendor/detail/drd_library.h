@@ -9,7 +9,9 @@ namespace palp {
 struct DrdLibrary {
     void (*dhdGetSDKVersion)(int*, int*, int*, int*);
     int (*dhdGetDeviceCount)();
-    int (*dhdOpenID)(char); ///< by index; returns the device's number
+    int (*drdOpenID)(char); ///< by index; returns the device's number, which the functions drd* know from then on
+    int (*drdClose)(char);
+    int (*dhdOpenID)(char); ///< likewise, of a device that the functions drd* do not know
     int (*dhdClose)(char);
     int (*dhdGetSystemType)(char);
     const char* (*dhdGetSystemName)(char);
@@ -23,14 +25,15 @@ struct DrdLibrary {
     int (*dhdSetGravityCompensation)(int, char);
     /// [N] x 3, [N m] x 3, [N]; 2: the motors are saturated
     int (*dhdSetForceAndTorqueAndGripperForce)(double, double, double, double, double, double, double, char);
-    int (*dhdSetMaxForce)(double, char); ///< [N]
-    int (*dhdGetStatus)(int*, char);     ///< of kDrdStatus numbers
+    int (*dhdGetStatus)(int*, char); ///< of kDrdStatus numbers
     int (*dhdStop)(char);
     const char* (*dhdErrorGetLastStr)();
     bool (*drdIsInitialized)(char);
     int (*drdAutoInit)(char);
     int (*drdStop)(bool, char);
-    int (*dhdGetGripperAngleRad)(double*, char); ///< [rad]; null in a library without it
+    // Null in a library without them.
+    int (*dhdSetMaxForce)(double, char);         ///< [N]; version 3.7 has none
+    int (*dhdGetGripperAngleRad)(double*, char); ///< [rad]
 
     std::string place; ///< where it was found
 };

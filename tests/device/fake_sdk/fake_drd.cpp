@@ -46,12 +46,26 @@ int dhdGetDeviceCount()
 int dhdOpenID(char index)
 {
     if (sdk().error != 0 || index != 0) return -1;
+    sdk().isRobot = false;
     ++sdk().opened;
     return 4;
 }
 int dhdClose(char id)
 {
-    if (id != 4) return -1;
+    if (id != 4 || sdk().isRobot) return -1;
+    ++sdk().closed;
+    return 0;
+}
+int drdOpenID(char index)
+{
+    if (sdk().error != 0 || index != 0 || !sdk().knowsDrd) return -1;
+    sdk().isRobot = true;
+    ++sdk().opened;
+    return 4;
+}
+int drdClose(char id)
+{
+    if (id != 4 || !sdk().isRobot) return -1;
     ++sdk().closed;
     return 0;
 }
@@ -91,16 +105,18 @@ int dhdEnableForce(unsigned char on, char)
 {
     sdk().isForceOn = on != 0;
     sdk().status    = 0;
-    ++sdk().enabled;
+    sdk().enabled += on != 0 ? 1 : 0;
     return result();
 }
-int dhdSetBrakes(int, char)
+int dhdSetBrakes(int on, char)
 {
+    sdk().areBrakesOn = on != 0;
     return result();
 }
 #ifndef PALPATE_FAKE_OLD
-int dhdSetGravityCompensation(int, char)
+int dhdSetGravityCompensation(int on, char)
 {
+    sdk().isBalanced = on != 0;
     return -1; // as of a Falcon
 }
 #endif
@@ -112,15 +128,20 @@ int dhdSetForceAndTorqueAndGripperForce(double x, double y, double z, double, do
     sdk().force[2] = z;
     return 2; // saturated: no error
 }
+#ifndef PALPATE_FAKE_OLD
 int dhdSetMaxForce(double, char)
 {
     return result();
 }
+#endif
 int dhdGetStatus(int* status, char)
 {
     for (int n = 0; n < 17; ++n) status[n] = 0;
-    status[0]  = sdk().hasPower ? 1 : 0;
-    status[2]  = 1;
+    status[0] = sdk().hasPower ? 1 : 0;
+    status[2] = 1;
+    if (!sdk().isReady) sdk().isForceOn = false; // a reset ends the force
+    status[5]  = sdk().isForceOn ? 1 : 0;
+    status[6]  = sdk().areBrakesOn ? 1 : 0;
     status[9]  = sdk().isBroken ? 1 : 0;
     status[1]  = sdk().isPresent ? 1 : 0;
     status[3]  = sdk().isReady ? 0 : 1;
@@ -139,16 +160,17 @@ const char* dhdErrorGetLastStr()
 }
 bool drdIsInitialized(char)
 {
-    return sdk().isReady;
+    return sdk().isRobot && sdk().isReady;
 }
 int drdAutoInit(char)
 {
+    if (!sdk().isRobot) return -1;
     ++sdk().calibrated;
     sdk().isReady = true;
     return result();
 }
 int drdStop(bool, char)
 {
-    return result();
+    return sdk().isRobot ? result() : -1;
 }
 }

@@ -103,7 +103,9 @@ const char* hdGetString(unsigned what)
 }
 palp::HdError hdGetError()
 {
-    return {unsigned(sdk().error.exchange(0)), 0, 7};
+    const int code = sdk().error.exchange(0);
+    if (code != 0) sdk().error = sdk().nextError.exchange(0);
+    return {unsigned(code), 0, 7};
 }
 const char* hdGetErrorString(unsigned)
 {
@@ -128,6 +130,10 @@ unsigned long hdScheduleAsynchronous(HdCallback callback, void* data, unsigned s
 }
 void hdStartScheduler()
 {
+    if (sdk().startError != 0) {
+        sdk().error = sdk().startError.load();
+        return;
+    }
     for (int n = 0; n < sdk().callbackThreads; ++n)
         scheduler().threads.emplace_back([](const std::stop_token& stop) {
             while (!stop.stop_requested()) {

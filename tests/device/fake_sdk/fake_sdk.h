@@ -16,10 +16,16 @@ struct FakeSdk {
     std::atomic<int>    type{33};              ///< Force Dimension: the library's number of it, an omega.3's
     std::atomic<bool>   hasPower{true};        ///< Force Dimension
     std::atomic<bool>   isBroken{false};       ///< Force Dimension: the device reports an error
+    std::atomic<bool>   knowsDrd{true};        ///< Force Dimension: drdOpenID() opens the device
+    std::atomic<bool>   isRobot{false};        ///< Force Dimension: it was opened so; drd* serve no other device
+    std::atomic<bool>   areBrakesOn{true};     ///< Force Dimension
+    std::atomic<bool>   isBalanced{false};     ///< Force Dimension: gravity is compensated
     std::atomic<bool>   isSame{false};         ///< Force Dimension: each read gives the sample of before
     std::atomic<bool>   isOutOfNumbers{false}; ///< positions are NaN
     std::atomic<bool>   isLost{false};         ///< OpenHaptics: its calibration is gone
     std::atomic<int>    openError{0};          ///< OpenHaptics: of opening a device
+    std::atomic<int>    startError{0};         ///< OpenHaptics: of starting the scheduler
+    std::atomic<int>    nextError{0};          ///< OpenHaptics: that is kept behind `error`
     std::atomic<int>    opened{0}, closed{0}, enabled{0}, calibrated{0}, calls{0};
     std::atomic<int>    callbackThreads{1}; ///< OpenHaptics: of the scheduler; two call doubled
     std::atomic<int>    lateCallbacks{0};   ///< OpenHaptics: made after it was unscheduled

@@ -96,8 +96,14 @@ static class Game
         Expect(deepest < -1e-4 && deepest > -2e-3, "the mesh bends, found " + deepest + " m");
         Expect(mesh.drawings > 0, "normals follow");
         Expect(sheet.Step(3, new UnityEngine.Vector3(0, float.NaN, 0), new UnityEngine.Vector3()).y == 0, "no force for a hand that is no number");
+        Expect(sheet.IsStopped && sheet.Words().Contains("first button"), "its clock has stalled, found: " + sheet.Words());
+        for (int n = 0; n < 300; ++n) sheet.Step(3 + 1e-3 * (n + 1), new UnityEngine.Vector3(0, 0.05f, 0), new UnityEngine.Vector3(), 1);
+        for (int n = 0; n < 50; ++n) sheet.Step(3.301 + 1e-3 * n, new UnityEngine.Vector3(0, 0.05f, 0), new UnityEngine.Vector3());
+        Expect(!sheet.IsStopped, "until its first button is held, found: " + sheet.Words());
+        sheet.Step(3.36, new UnityEngine.Vector3(0, 0.05f, 0), new UnityEngine.Vector3(), 0, 0, true);
+        Expect(sheet.Words() != "the force comes on" && sheet.Words() != "", "a hand that is absent is said, found: " + sheet.Words());
         Send(sheet, "OnDestroy");
-        Expect(sheet.Step(3.1, new UnityEngine.Vector3(0, -1e-3f, 0), new UnityEngine.Vector3()).y == 0, "no force after the end");
+        Expect(sheet.Step(3.4, new UnityEngine.Vector3(0, -1e-3f, 0), new UnityEngine.Vector3()).y == 0, "no force after the end");
 
         PalpateObject coarse = Beside(Sheet(3)); // touched on points between its vertices, which it cannot draw
         Send(coarse, "Start");

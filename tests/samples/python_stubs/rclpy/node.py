@@ -1,5 +1,7 @@
 from types import SimpleNamespace
 
+import rclpy
+
 parameters = {}
 
 
@@ -16,6 +18,8 @@ class Node:
 
     def create_publisher(self, kind, topic, depth):
         def publish(message):
+            if not rclpy.is_valid:
+                raise RuntimeError("publisher's context is invalid")
             if type(message) is not kind:
                 raise TypeError(f"{topic}: expected {kind}, found {type(message)}")
             self.published.append((topic, message))
