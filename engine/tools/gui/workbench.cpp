@@ -28,6 +28,14 @@ bool inContact(const SessionView* view)
     return view && glm::length(view->record.normal) > 0;
 }
 
+/// Returns "points 500, thickness 4 mm".
+std::string inWords(const SceneValues& values)
+{
+    std::string words;
+    for (const auto& [key, value] : values) words += (words.empty() ? "" : ", ") + key + " " + value;
+    return words;
+}
+
 /// Returns " × 3" for a device whose millimetre is three of the scene; the pointer is in the scene.
 std::string scaleOf(const Scene& scene, bool byPointer)
 {
@@ -134,8 +142,8 @@ void Workbench::drawWords()
 /// Does what the user has asked for since the last session began.
 void Workbench::takeRequests()
 {
-    const auto mayDiscard = [this] { return paint_.mayDiscard(object_.stage()); };
-    if (const std::string what = object_.takeRequestedObject(); !what.empty() && mayDiscard()) openOther(what);
+    const auto mayDiscard = [this](const std::string& request) { return paint_.mayDiscard(object_.stage(), request); };
+    if (const std::string what = object_.takeRequestedObject(); !what.empty() && mayDiscard(what)) openOther(what);
     if (const SceneValues wanted = object_.takeRequestedValues(); !wanted.empty()) takeValues(wanted);
 }
 
@@ -161,7 +169,8 @@ void Workbench::takeValues(const SceneValues& wanted)
         if (haveSameCloud(scene, object_.stage().scene())) {
             object_.stage().change(scene);
             session_.forgetSolver();
-        } else if (paint_.mayDiscard(object_.stage())) {
+            paint_.forgetWarning();
+        } else if (paint_.mayDiscard(object_.stage(), inWords(wanted))) {
             object_.adopt(meanwhile("reading " + fileNameOf(scene.cloud) + " again ...",
                                     [scene] { return std::make_unique<Stage>(scene); }));
             useObject();

@@ -419,6 +419,35 @@ TEST_F(WorkbenchTest, PaintStaysFromSessionToSessionAndIsAskedForBeforeItIsLost)
     EXPECT_GT(std::ranges::max(painted.cloud.stiffness()), 1.01 * std::ranges::min(painted.cloud.stiffness()));
 }
 
+TEST_F(WorkbenchTest, PaintIsDiscardedByTheRequestThatWasWarnedOfAndByNoOther)
+{
+    settings_.values["stiffness"] = kRamp;
+    const auto warned             = [this](const std::string& of) {
+        return [=, this] { return complainedOf("asking again for " + of + " discards it"); };
+    };
+    const auto asksAgain = [&](const std::string& of) {
+        rest(0.3);
+        step("it is still there", [this](WindowInput&) {
+            EXPECT_EQ(screen_.points, 2000U);
+            complaints_.clear();
+        });
+        drop(of);
+        wait("a question", warned(of));
+    };
+    paint();
+    press('B');
+    drop("sample:palm");
+    wait("a question", warned("sample:palm"));
+    asksAgain("sample:ellipsoid");
+    press('R'); // leaves the warning
+    asksAgain("sample:ellipsoid");
+    step("other values", [this](WindowInput&) { bench_->change({{"thickness", "5 mm"}}); });
+    asksAgain("sample:ellipsoid");
+    drop("sample:ellipsoid");
+    wait("the ellipsoid", [this] { return screen_.points != 2000; });
+    run();
+}
+
 TEST_F(WorkbenchTest, ARecordingEndsWhereAStrokeIsPaintedAgain)
 {
     settings_.values["stiffness"] = kRamp;
