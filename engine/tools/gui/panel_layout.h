@@ -26,7 +26,7 @@ struct PictureArea {
     glm::dvec2 size{};   ///< [px]
 };
 
-/// Returns the area of a picture that the panels leave free: all of it while they are hidden.
+/// Returns the area of a picture that the panels leave free: all of it while they, or nodules, are hidden.
 /// \param size  of the picture [px]
 [[nodiscard]] PictureArea freeArea(const ViewState& state, const glm::ivec2& size, double scale);
 
