@@ -20,6 +20,12 @@ inline constexpr float kStatusPad = 5;  ///< above and below the text of the sta
 /// \param height  of the picture [px]
 [[nodiscard]] float footHeight(float height, float scale);
 
+/// Returns whether the column and the status line are shown: nobody has hidden them, and no nodules are hidden.
+[[nodiscard]] inline bool hasColumn(const ViewState& state)
+{
+    return state.panels && !state.blind;
+}
+
 /// A part of a picture.
 struct PictureArea {
     glm::dvec2 corner{}; ///< the upper left one [px]

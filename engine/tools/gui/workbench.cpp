@@ -338,7 +338,7 @@ void Workbench::showTouch(const SessionView* view)
 void Workbench::writeTexts(const SessionView* view)
 {
     ViewScene& scene = object_.stage().view().scene();
-    if (!panels_.exist() || !state_.panels || state_.blind) {
+    if (!panels_.exist() || !hasColumn(state_)) {
         scene.title = object_.stem();
         scene.note  = note(view);
     }
@@ -347,12 +347,12 @@ void Workbench::writeTexts(const SessionView* view)
 
 std::string Workbench::note(const SessionView* view) const
 {
-    if (!notices_.current().empty()) return notices_.current();
     if (const GovernorFault fault = view ? governorFault(view->record) : GovernorFault::none;
         fault != GovernorFault::none) {
         const FaultAdvice advice = adviceOn(fault);
         return std::string("no force: ") + advice.reason + " " + advice.remedy + " R starts anew.";
     }
+    if (!notices_.current().empty()) return notices_.current();
     if (!notices_.faults().empty()) return notices_.faults().back();
     if (const std::string why = session_.unsolved(); inContact(view) && !why.empty())
         return "the plate cannot be solved here: " + why;

@@ -280,6 +280,11 @@ TEST_F(WorkbenchTest, AfterAFaultOfTheGovernorThereIsAForceAgainByR)
     step("a fast hand", [this](WindowInput&) { hand_.hurries = true; });
     wait("no force", [this] { return hand_.last == 0; });
     wait("why", [this] { return screen_.said_("The hand moved faster than 1.2 m/s. Hold it still"); });
+    press(kF7Key); // has a message
+    rest(0.3);
+    step("still why", [this](WindowInput&) {
+        EXPECT_TRUE(screen_.said.starts_with("no force: The hand moved faster")) << screen_.said;
+    });
     step("a slow one", [this](WindowInput&) { hand_.hurries = false; });
     rest(0.5);
     step("it stays off", [this](WindowInput&) { EXPECT_EQ(hand_.last, 0); });
