@@ -17,6 +17,10 @@ namespace {
 /// Shares of the window: large enough to be seen, small enough to leave the dent free [1].
 constexpr double kArrow = 0.006, kOutline = 0.0016, kCue = 0.07;
 
+/// Share of even light where stiffness is painted, so that a stiff value in shade does not look like a softer one. Less
+/// than that of a figure about values alone: the shape of what is touched has to be seen too [1].
+constexpr double kLightOfStiffness = 0.6;
+
 constexpr double kDot = 0.22; ///< radius of a dot, of the point's core [1]
 
 /// Circles and spokes of the near half of the fitted sphere, as far as a window's edge reaches.
@@ -123,6 +127,7 @@ void TouchView::paint(double load, const TouchLook& look)
         const auto       range = rangeOf(stiffness_, Scale::logarithmic).value_or(ValueRange{});
         const Scale      scale = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
         scene_.values          = stiffness_;
+        scene_.evenLight       = kLightOfStiffness;
         if (object_.cloud().kind() == StiffnessKind::modulus)
             scene_.colours = {look.map, scale, widened(range, scale), "Young's modulus", "Pa"};
         else
