@@ -16,6 +16,7 @@ TextContent contentOf(const ViewScene& scene, const Overlays& overlays, const Ca
     now.stylus     = scene.stylus.has_value();
     now.force      = scene.force.has_value();
     now.outline    = !scene.outline.empty();
+    now.brush      = !scene.brush.empty();
     now.sphere     = !scene.sphere.empty();
     now.ghost      = overlays.ghost;
     now.projected  = overlays.projected;

@@ -331,7 +331,7 @@ void Workbench::showTouch(const SessionView* view)
     }
     if (state_.tool != Tool::paint || input_.panelsTakePointer) return;
     if (const auto hit = stage.hitAt(state_.camera, input_.pointer, input_.size))
-        std::ranges::copy(brushOutline(*hit, state_.brush.radius), std::back_inserter(stage.view().scene().outline));
+        stage.view().scene().brush = brushOutline(*hit, state_.brush.radius);
 }
 
 /// Writes the texts over the picture. With panels, they show what title and note would.

@@ -159,6 +159,11 @@ std::vector<KeyEntry> keyOf(const ViewScene& scene)
                            const double side = std::max(std::abs(p.x), std::abs(p.y));
                            return side > 0.62 && side < 0.85;
                        }});
+    if (!scene.brush.empty())
+        key.push_back({"brush", inkOn(scene.ground), [](glm::dvec2 p) {
+                           const double radius = glm::length(p);
+                           return radius > 0.65 && radius < 0.88;
+                       }});
     const auto hasDots = [&](Rgb8 colour) {
         return std::ranges::any_of(scene.dots, [&](const ViewDot& dot) { return dot.colour == colour; });
     };

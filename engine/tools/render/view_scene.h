@@ -68,6 +68,7 @@ struct ViewScene {
     std::optional<ViewSegment> normal;
     double                     arrowRadius = 0;   ///< of the force's shaft; the normal's is thinner [m]
     std::vector<ViewSegment>   outline;           ///< of the patch
+    std::vector<ViewSegment>   brush;             ///< rim of what paints
     std::vector<ViewSegment>   sphere;            ///< lines of the fitted sphere
     std::vector<ViewSegment>   bulging, hollow;   ///< strokes along principal curvatures
     double                     outlineRadius = 0; ///< of all lines [m]

@@ -19,10 +19,12 @@ public:
     Image draw(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* texts) override
     {
         still = camera;
+        rim   = scene.brush.size();
         return BlankScreen::draw(scene, camera, size, texts);
     }
 
-    Camera still; ///< that saw the last one
+    Camera      still;   ///< that saw the last one
+    std::size_t rim = 0; ///< lines of the brush in it
 };
 
 TEST(PictureLoop, ARestIsNoTimeFromPictureToPicture)
@@ -48,7 +50,7 @@ TEST(PictureLoop, ARestIsNoTimeFromPictureToPicture)
     EXPECT_EQ(loop.report().frameTimes.size(), 3U);
 }
 
-TEST(PictureLoop, AStillHasItsTargetInTheMiddle)
+TEST(PictureLoop, AStillHasItsTargetInTheMiddleAndNoBrush)
 {
     const TemporaryFolder folder;
     const auto            before = std::filesystem::current_path();
@@ -59,10 +61,13 @@ TEST(PictureLoop, AStillHasItsTargetInTheMiddle)
     Camera camera;
     camera.centre = {0.3, -0.1}; // beside the panels
     ViewScene scene;
+    scene.brush = {{{0, 0, 0}, {1, 0, 0}}};
+    screen.rim  = 1;
     loop.saveStill(scene, camera, "a title");
     std::filesystem::current_path(before);
 
     EXPECT_EQ(screen.still.centre, glm::dvec2(0));
+    EXPECT_EQ(screen.rim, 0U);
 }
 
 } // namespace

@@ -35,6 +35,8 @@ public:
         ++pictures;
         camera = now;
         points = scene.positions.size();
+        brush  = !scene.brush.empty();
+        patch  = !scene.outline.empty();
         if (scene.note != said) said = scene.note;
         notes += said + "\n";
         return true;
@@ -42,7 +44,7 @@ public:
 
     [[nodiscard]] bool said_(const std::string& words) const { return notes.find(words) != std::string::npos; }
 
-    bool        isLost   = false;
+    bool        isLost = false, brush = false, patch = false; ///< the rims of both are shown
     int         pictures = 0;
     std::size_t points   = 0; ///< of what is shown
     Camera      camera;
@@ -450,6 +452,17 @@ TEST_F(WorkbenchTest, PaintIsDiscardedByTheRequestThatWasWarnedOfAndByNoOther)
     asksAgain("sample:ellipsoid");
     drop("sample:ellipsoid");
     wait("the ellipsoid", [this] { return screen_.points != 2000; });
+    run();
+}
+
+TEST_F(WorkbenchTest, TheBrushsRimIsNotTakenForThePatchs)
+{
+    wait("the object", [this] { return screen_.points == 2000; });
+    press('B');
+    wait("the brush", [this] { return screen_.brush; });
+    step("no patch", [this](WindowInput&) { EXPECT_FALSE(screen_.patch); });
+    press('B');
+    wait("no brush", [this] { return !screen_.brush; });
     run();
 }
 
