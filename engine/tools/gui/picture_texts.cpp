@@ -12,6 +12,7 @@ TextContent contentOf(const ViewScene& scene, const Overlays& overlays, const Ca
     now.halfHeight = camera.halfHeight();
     now.size       = size;
     now.scale      = scale;
+    now.goesOn     = scene.colours.goesOn;
     now.proxy      = scene.proxy.has_value();
     now.stylus     = scene.stylus.has_value();
     now.force      = scene.force.has_value();

@@ -168,6 +168,7 @@ void Workbench::takeValues(const SceneValues& wanted)
         const Scene scene = object_.sceneWith(values);
         if (haveSameCloud(scene, object_.stage().scene())) {
             object_.stage().change(scene);
+            fixScales();
             session_.forgetSolver();
             paint_.forgetWarning();
         } else if (paint_.mayDiscard(object_.stage(), inWords(wanted))) {
@@ -215,20 +216,27 @@ void Workbench::tellAssumptions()
     if (!all.empty()) notices_.say(all);
 }
 
-/// Begins anew with the object on the stage: the hand over it, the brush, and what may be shown of it. The ends of the
-/// scales of colours and arrows stay fixed from here on, so that a deeper dent or stronger force always looks so.
+/// Fixes the ends of the scales of colours and arrows, so that a deeper dent or stronger force always looks so.
+void Workbench::fixScales()
+{
+    const Scene& scene    = object_.stage().scene();
+    const double limit    = scene.patch.large == Large::on ? 2 : 0.5; // of the theory's trust, in thicknesses [1]
+    state_.look.deepest   = limit * scene.material.thickness;
+    state_.look.strongest = 0.5 * scene.maxForce;
+}
+
+/// Begins anew with the object on the stage: the hand over it, the brush, and what may be shown of it.
 void Workbench::useObject()
 {
     Stage&       stage = object_.stage();
     const Scene& scene = stage.scene();
     session_.setStage(stage);
     paint_.startAnew();
-    state_.pressDepth     = 0.4 * scene.material.thickness;
-    state_.brush.radius   = std::clamp(scene.patch.footprintRadius, BrushChoice::kSmallest, BrushChoice::kLargest);
-    state_.brush.value    = contrastIn(stage.painted().cloud());
-    state_.look.deepest   = 0.5 * scene.material.thickness; // the limit of plate theory
-    state_.look.strongest = 0.5 * scene.maxForce;
-    state_.blind          = scene.overlay != nullptr;
+    state_.pressDepth   = 0.4 * scene.material.thickness;
+    state_.brush.radius = std::clamp(scene.patch.footprintRadius, BrushChoice::kSmallest, BrushChoice::kLargest);
+    state_.brush.value  = contrastIn(stage.painted().cloud());
+    fixScales();
+    state_.blind = scene.overlay != nullptr;
     if (!state_.blind) return;
     state_.look.paint              = ViewPaint::plain; // no colours show the hidden nodules
     state_.look.overlays.projected = false;

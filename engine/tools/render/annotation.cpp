@@ -123,6 +123,13 @@ void drawColours(Annotator& to, const ViewColours& colours, double top)
     const glm::dvec2 corner(to.width() - wide - s, std::max(5.5 * s, top + 2.5 * s));
     to.fade(corner - glm::dvec2(0.7 * s, 2.2 * s), {wide + 1.4 * s, high + 3.2 * s});
     to.text(corner - glm::dvec2(0, 0.8 * s), title);
+    if (colours.goesOn) { // a tip, as of an arrow: deeper ones have its colour too
+        const double tip = 0.6 * s;
+        to.eachPixel(corner - glm::dvec2(0, tip), {bar, tip}, [&](Rgb8& pixel, glm::dvec2 at) {
+            const double from = (corner.y - at.y) / tip, aside = std::abs(at.x - corner.x - bar / 2) / (bar / 2);
+            if (aside < 1 - from) pixel = surfaceColour(1, colours.map);
+        });
+    }
     to.fill(corner - 1.0, {bar + 2, high + 2}, to.ink());
     to.eachPixel(corner, {bar, high},
                  [&](Rgb8& pixel, glm::dvec2 at) { pixel = surfaceColour(1 - (at.y - corner.y) / high, colours.map); });

@@ -119,9 +119,11 @@ void TouchView::paint(double load, const TouchLook& look)
     scene_.oneSided  = oneSided_;
     scene_.ground    = look.ground;
     if (look.paint == ViewPaint::deflection) {
-        const double most = look.deepest > 0 ? look.deepest : std::abs(load) * surface_.mostResponse;
-        scene_.values     = deflections_;
-        scene_.colours    = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
+        constexpr double kRounding = 1e-9; // [1]
+        const double     most      = look.deepest > 0 ? look.deepest : std::abs(load) * surface_.mostResponse;
+        scene_.values              = deflections_;
+        scene_.colours             = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
+        scene_.colours.goesOn      = std::abs(load) * surface_.mostResponse > (1 + kRounding) * most;
     } else if (look.paint == ViewPaint::stiffness) {
         constexpr double kWide = 5; // from such a ratio on a linear scale hides the soft end [1]
         const auto       range = rangeOf(stiffness_, Scale::logarithmic).value_or(ValueRange{});

@@ -19,9 +19,10 @@ enum class Ground { light, dark };
 struct ViewColours {
     ColourMap   map   = ColourMap::viridis;
     Scale       scale = Scale::linear;
-    ValueRange  range;    ///< its ends [unit]
-    std::string quantity; ///< "deflection"
-    std::string unit;     ///< SI; the legend chooses the prefix
+    ValueRange  range;          ///< its ends [unit]
+    std::string quantity;       ///< "deflection"
+    std::string unit;           ///< SI; the legend chooses the prefix
+    bool        goesOn = false; ///< some values lie above the range
 };
 
 struct ViewSegment {

@@ -35,6 +35,7 @@ public:
         ++pictures;
         camera = now;
         points = scene.positions.size();
+        end    = scene.colours.range.high;
         brush  = !scene.brush.empty();
         patch  = !scene.outline.empty();
         if (scene.note != said) said = scene.note;
@@ -47,6 +48,7 @@ public:
     bool        isLost = false, brush = false, patch = false; ///< the rims of both are shown
     int         pictures = 0;
     std::size_t points   = 0; ///< of what is shown
+    double      end      = 0; ///< of the colours [m]
     Camera      camera;
     std::string said, notes; ///< now; all of it
 };
@@ -672,6 +674,15 @@ TEST_F(WorkbenchTest, AValueThatASceneDoesNotTakeIsExplainedAndTheSessionGoesOn)
 
     EXPECT_TRUE(holds(complaints_, {"9 km", "1e-6 to 1 m", "such as 4 mm"}))
         << "found, expected, remedy: " << complaints_;
+}
+
+TEST_F(WorkbenchTest, ColoursReachAsFarAsTheTheoryIsTrusted)
+{
+    settings_.values["thickness"] = "2 mm";
+    wait("half the thickness", [this] { return std::abs(screen_.end - 1e-3) < 1e-9; });
+    step("large dents", [this](WindowInput&) { bench_->change({{"large", "on"}}); });
+    wait("two thicknesses", [this] { return std::abs(screen_.end - 4e-3) < 1e-9; });
+    run();
 }
 
 TEST_F(WorkbenchTest, ALawGoesBackToTheCloudsOwn)

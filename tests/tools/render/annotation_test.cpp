@@ -90,6 +90,22 @@ TEST(Annotation, TheKeyNamesOnlyWhatIsThere)
     EXPECT_EQ(count(image, kForceColour), 0u);
 }
 
+TEST(Annotation, ColoursThatGoOnEndInATip)
+{
+    const double value = 1;
+    ViewScene    scene;
+    scene.values          = {&value, 1};
+    scene.colours         = {ColourMap::cividis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+    const auto ofTheTopIn = [&] {
+        Image image(640, 480, kGround);
+        annotate(image, scene, {});
+        return count(image, surfaceColour(1, ColourMap::cividis));
+    };
+    const std::size_t plain = ofTheTopIn();
+    scene.colours.goesOn    = true;
+    EXPECT_GT(ofTheTopIn(), plain + 10);
+}
+
 TEST(Annotation, ALongNoteGoesOnInFurtherLinesAboveTheColours)
 {
     const double value = 1;

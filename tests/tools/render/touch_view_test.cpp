@@ -30,5 +30,20 @@ TEST_F(TouchViewTest, StiffnessIsSeenInAnEvenLightAndDentsByTheirRelief)
     EXPECT_EQ(shownAs(ViewPaint::plain).evenLight, 0);
 }
 
+TEST_F(TouchViewTest, ADentBeyondTheColoursIsSaid)
+{
+    PlateSolver   host("host");
+    const Contact contact = touchAt(object_, sample_.place, sample_.from, PatchSettings{}.window / 4);
+    const Patch   patch   = deform(object_, contact, PatchSettings{}, host);
+    TouchLook     look;
+    view_.show(&patch, 1, look);
+    EXPECT_FALSE(view_.scene().colours.goesOn) << "a touch has all its own colours";
+    look.deepest = view_.scene().colours.range.high;
+    view_.show(&patch, 0.9, look);
+    EXPECT_FALSE(view_.scene().colours.goesOn);
+    view_.show(&patch, 1.1, look);
+    EXPECT_TRUE(view_.scene().colours.goesOn);
+}
+
 } // namespace
 } // namespace palp
