@@ -69,6 +69,7 @@ void Controls::replayLast()
 void Controls::goOn()
 {
     parts_.notices.clearFaults();
+    parts_.paint.forgetWarning();
     parts_.session.resume();
     endRecording("the session begins anew");
     parts_.session.end();

@@ -29,6 +29,13 @@ void PaintTool::startAnew()
 {
     lastDab_.reset();
     kept_ = Kept::saved;
+    forgetWarning();
+}
+
+void PaintTool::change()
+{
+    kept_ = Kept::unsaved;
+    forgetWarning();
 }
 
 void PaintTool::stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3& place)
@@ -47,7 +54,7 @@ void PaintTool::stroke(Stage& stage, const BrushChoice& brush, const glm::dvec3&
         }
     });
     lastDab_ = place;
-    kept_    = Kept::unsaved;
+    change();
 }
 
 void PaintTool::endStroke(Stage& stage)
@@ -59,7 +66,7 @@ void PaintTool::endStroke(Stage& stage)
 bool PaintTool::undo(Stage& stage)
 {
     if (notices_.busy() || !stage.painting().canUndo()) return false;
-    kept_ = Kept::unsaved;
+    change();
     stage.paint([](StiffnessPainting& painting) { painting.undo(); });
     return true;
 }
@@ -67,7 +74,7 @@ bool PaintTool::undo(Stage& stage)
 bool PaintTool::redo(Stage& stage)
 {
     if (notices_.busy() || !stage.painting().canRedo()) return false;
-    kept_ = Kept::unsaved;
+    change();
     stage.paint([](StiffnessPainting& painting) { painting.redo(); });
     return true;
 }
@@ -112,13 +119,13 @@ bool PaintTool::unsaved(const Stage& stage) const
     return stage.painting().changed() && kept_ != Kept::saved;
 }
 
-bool PaintTool::mayDiscard(const Stage& stage)
+bool PaintTool::mayDiscard(const Stage& stage, const std::string& request)
 {
     if (!unsaved(stage)) return true;
-    const bool warned = kept_ == Kept::warned;
-    kept_             = warned ? Kept::unsaved : Kept::warned; // the action that discards it may fail
+    const bool warned = warnedOf_ == request;
+    warnedOf_         = warned ? "" : request; // the action that discards it may fail
     if (warned) return true;
-    notices_.complain("what is painted is not saved: Ctrl+S saves it, repeating the request discards it");
+    notices_.complain("what is painted is not saved: Ctrl+S saves it; asking again for " + request + " discards it");
     return false;
 }
 

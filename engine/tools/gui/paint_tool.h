@@ -1,5 +1,6 @@
 #pragma once
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/tools/gui/notices.h"
@@ -35,15 +36,21 @@ public:
     /// \return whether nothing is unsaved now
     bool               save(const Stage& stage, const std::filesystem::path& folder = {});
     [[nodiscard]] bool unsaved(const Stage& stage) const;
-    /// Returns true if the paint is saved or the user has asked twice; warns the first time.
-    [[nodiscard]] bool mayDiscard(const Stage& stage);
+    /// Returns true if the paint is saved or the user has asked twice for the same; warns the first time.
+    /// \param request  what the user asks for, as the warning names it
+    [[nodiscard]] bool mayDiscard(const Stage& stage, const std::string& request);
+    /// Forgets a warning that is not shown any more: the next request is warned of again.
+    void forgetWarning() { warnedOf_.clear(); }
 
 private:
-    enum class Kept { saved, unsaved, warned };
+    enum class Kept { saved, unsaved };
+
+    void change();
 
     Notices&                  notices_;
     std::optional<glm::dvec3> lastDab_; ///< of the stroke that has begun [m]
     Kept                      kept_ = Kept::saved;
+    std::string               warnedOf_; ///< the request that has been warned of; empty: none
 };
 
 /// Returns the brush's rim as lines on the surface.

@@ -10,8 +10,11 @@ WindowInput PanelLayer::begin(WindowInput input, bool dark, bool resized)
     const auto     now     = std::chrono::steady_clock::now();
     const bool     glides  = input.moved != glm::dvec2(0) && !input.touch;
     const bool     presses = input.left || input.leftPressed || leftBefore_ || !input.keys.empty();
-    const bool     orbits  = presses && !takePointer_ && input.left;
-    due_ = frame_ && (((glides || presses) && !orbits) || !input.typed.empty() || resized || now - drawnAt_ > kSeldom);
+    // What a press takes is known only from a frame of ImGui: the pointer may have come onto a panel with it.
+    const bool orbits  = !takePointer_ && input.left && leftBefore_ && !input.leftPressed;
+    const bool scrolls = takePointer_ && input.wheel != 0;
+    due_               = frame_ &&
+           (((glides || presses) && !orbits) || scrolls || !input.typed.empty() || resized || now - drawnAt_ > kSeldom);
     leftBefore_ = input.left;
     if (!due_) {
         input.panelsTakePointer = takePointer_;

@@ -25,7 +25,7 @@ float footHeight(float height, float scale)
 PictureArea freeArea(const ViewState& state, const glm::ivec2& size, double scale)
 {
     const glm::dvec2 all(size);
-    if (!state.panels) return {{0, 0}, all};
+    if (!hasColumn(state)) return {{0, 0}, all};
     const double left = columnWidth(float(size.x), float(scale)), top = statusHeight(float(scale));
     const double foot = state.texts ? footHeight(float(size.y), float(scale)) : 0;
     // A window lower than its own lines has no room left; half of it serves as well as any other answer.

@@ -20,13 +20,19 @@ inline constexpr float kStatusPad = 5;  ///< above and below the text of the sta
 /// \param height  of the picture [px]
 [[nodiscard]] float footHeight(float height, float scale);
 
+/// Returns whether the column and the status line are shown: nobody has hidden them, and no nodules are hidden.
+[[nodiscard]] inline bool hasColumn(const ViewState& state)
+{
+    return state.panels && !state.blind;
+}
+
 /// A part of a picture.
 struct PictureArea {
     glm::dvec2 corner{}; ///< the upper left one [px]
     glm::dvec2 size{};   ///< [px]
 };
 
-/// Returns the area of a picture that the panels leave free: all of it while they are hidden.
+/// Returns the area of a picture that the panels leave free: all of it while they, or nodules, are hidden.
 /// \param size  of the picture [px]
 [[nodiscard]] PictureArea freeArea(const ViewState& state, const glm::ivec2& size, double scale);
 

@@ -24,9 +24,19 @@ void drawBadges(const PanelDesk& desk)
     }
     if (desk.state.tool == Tool::paint) show("paint", kNamedColours[3]);
     if (needsAttention(content)) {
-        show("fault: see Touch", colourOf(Tone::fault, false));
         const GovernorFault fault = governorFault(content.history.newest());
-        tip(fault != GovernorFault::none ? adviceOn(fault).reason : content.faults.front().c_str());
+        const bool          isOff = fault != GovernorFault::none;
+        if (hasColumn(desk.state)) {
+            show("fault: see Touch", colourOf(Tone::fault, false));
+            tip(isOff ? adviceOn(fault).reason : content.faults.back().c_str());
+        } else { // nothing else says it
+            show(isOff ? "no force, R starts anew" : "fault", colourOf(Tone::fault, false));
+            ImGui::SameLine();
+            const std::string why =
+                isOff ? std::string(adviceOn(fault).remedy) + " " + adviceOn(fault).reason : content.faults.back();
+            ImGui::TextUnformatted(why.c_str());
+            tip(why.c_str());
+        }
     }
 }
 

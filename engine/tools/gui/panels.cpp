@@ -118,9 +118,10 @@ PanelWishes drawPanels(ViewState& state, const PanelContent& content, double sca
     PanelWishes wishes;
     PanelDesk   desk{state, content, wishes, float(scale)};
     const Style style(desk.dark(), desk.scale);
-    // A fault is shown even while panels are hidden, so that the user learns why the hand feels nothing.
-    const bool column = state.panels && !state.blind;
-    if (column || needsAttention(content)) {
+    // A fault is shown even while panels are hidden, so that the user learns why the hand feels nothing: by the note of
+    // the picture, or where that has no texts by the status line.
+    const bool column = hasColumn(state);
+    if (column || (!state.texts && needsAttention(content))) {
         const float top  = drawStatusLine(desk);
         const float foot = state.texts ? footHeight(ImGui::GetIO().DisplaySize.y, desk.scale) : 0;
         if (column) drawColumn(desk, top, foot);

@@ -91,10 +91,13 @@ void PictureLoop::showWords(const ViewScene& words, const Camera& camera, const 
 
 std::string PictureLoop::saveStill(ViewScene& scene, const Camera& camera, const std::string& title)
 {
-    Image image = screen_.draw(scene, camera, {size_.width, size_.height, 2, Detail::fine}, nullptr);
-    scene.title = title;
+    scene.brush.clear(); // a tool, not a part of what is shown
+    Camera middle = camera;
+    middle.centre = {}; // no panel covers a part of it
+    Image image   = screen_.draw(scene, middle, {size_.width, size_.height, 2, Detail::fine}, nullptr);
+    scene.title   = title;
     scene.note.clear();
-    annotate(image, scene, camera);
+    annotate(image, scene, middle);
     return saved(image);
 }
 

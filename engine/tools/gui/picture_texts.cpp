@@ -12,10 +12,12 @@ TextContent contentOf(const ViewScene& scene, const Overlays& overlays, const Ca
     now.halfHeight = camera.halfHeight();
     now.size       = size;
     now.scale      = scale;
+    now.goesOn     = scene.colours.goesOn;
     now.proxy      = scene.proxy.has_value();
     now.stylus     = scene.stylus.has_value();
     now.force      = scene.force.has_value();
     now.outline    = !scene.outline.empty();
+    now.brush      = !scene.brush.empty();
     now.sphere     = !scene.sphere.empty();
     now.ghost      = overlays.ghost;
     now.projected  = overlays.projected;

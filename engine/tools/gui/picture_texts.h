@@ -17,7 +17,8 @@ struct TextContent {
     glm::ivec2  size{};            ///< of the picture [px]
     double      scale = 1;         ///< of the display [1]
     bool        proxy = false, stylus = false, force = false, outline = false, sphere = false; ///< are in the picture
-    bool        ghost = false, projected = false, bulging = false, hollow = false;             ///< the same
+    bool        goesOn = false; ///< values lie above the colours
+    bool        brush = false, ghost = false, projected = false, bulging = false, hollow = false; ///< the same
 
     bool operator==(const TextContent&) const = default;
 };

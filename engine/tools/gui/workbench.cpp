@@ -28,6 +28,14 @@ bool inContact(const SessionView* view)
     return view && glm::length(view->record.normal) > 0;
 }
 
+/// Returns "points 500, thickness 4 mm".
+std::string inWords(const SceneValues& values)
+{
+    std::string words;
+    for (const auto& [key, value] : values) words += (words.empty() ? "" : ", ") + key + " " + value;
+    return words;
+}
+
 /// Returns " × 3" for a device whose millimetre is three of the scene; the pointer is in the scene.
 std::string scaleOf(const Scene& scene, bool byPointer)
 {
@@ -134,8 +142,8 @@ void Workbench::drawWords()
 /// Does what the user has asked for since the last session began.
 void Workbench::takeRequests()
 {
-    const auto mayDiscard = [this] { return paint_.mayDiscard(object_.stage()); };
-    if (const std::string what = object_.takeRequestedObject(); !what.empty() && mayDiscard()) openOther(what);
+    const auto mayDiscard = [this](const std::string& request) { return paint_.mayDiscard(object_.stage(), request); };
+    if (const std::string what = object_.takeRequestedObject(); !what.empty() && mayDiscard(what)) openOther(what);
     if (const SceneValues wanted = object_.takeRequestedValues(); !wanted.empty()) takeValues(wanted);
 }
 
@@ -160,8 +168,10 @@ void Workbench::takeValues(const SceneValues& wanted)
         const Scene scene = object_.sceneWith(values);
         if (haveSameCloud(scene, object_.stage().scene())) {
             object_.stage().change(scene);
+            fixScales();
             session_.forgetSolver();
-        } else if (paint_.mayDiscard(object_.stage())) {
+            paint_.forgetWarning();
+        } else if (paint_.mayDiscard(object_.stage(), inWords(wanted))) {
             object_.adopt(meanwhile("reading " + fileNameOf(scene.cloud) + " again ...",
                                     [scene] { return std::make_unique<Stage>(scene); }));
             useObject();
@@ -206,20 +216,27 @@ void Workbench::tellAssumptions()
     if (!all.empty()) notices_.say(all);
 }
 
-/// Begins anew with the object on the stage: the hand over it, the brush, and what may be shown of it. The ends of the
-/// scales of colours and arrows stay fixed from here on, so that a deeper dent or stronger force always looks so.
+/// Fixes the ends of the scales of colours and arrows, so that a deeper dent or stronger force always looks so.
+void Workbench::fixScales()
+{
+    const Scene& scene    = object_.stage().scene();
+    const double limit    = scene.patch.large == Large::on ? 2 : 0.5; // of the theory's trust, in thicknesses [1]
+    state_.look.deepest   = limit * scene.material.thickness;
+    state_.look.strongest = 0.5 * scene.maxForce;
+}
+
+/// Begins anew with the object on the stage: the hand over it, the brush, and what may be shown of it.
 void Workbench::useObject()
 {
     Stage&       stage = object_.stage();
     const Scene& scene = stage.scene();
     session_.setStage(stage);
     paint_.startAnew();
-    state_.pressDepth     = 0.4 * scene.material.thickness;
-    state_.brush.radius   = std::clamp(scene.patch.footprintRadius, BrushChoice::kSmallest, BrushChoice::kLargest);
-    state_.brush.value    = contrastIn(stage.painted().cloud());
-    state_.look.deepest   = 0.5 * scene.material.thickness; // the limit of plate theory
-    state_.look.strongest = 0.5 * scene.maxForce;
-    state_.blind          = scene.overlay != nullptr;
+    state_.pressDepth   = 0.4 * scene.material.thickness;
+    state_.brush.radius = std::clamp(scene.patch.footprintRadius, BrushChoice::kSmallest, BrushChoice::kLargest);
+    state_.brush.value  = contrastIn(stage.painted().cloud());
+    fixScales();
+    state_.blind = scene.overlay != nullptr;
     if (!state_.blind) return;
     state_.look.paint              = ViewPaint::plain; // no colours show the hidden nodules
     state_.look.overlays.projected = false;
@@ -322,14 +339,14 @@ void Workbench::showTouch(const SessionView* view)
     }
     if (state_.tool != Tool::paint || input_.panelsTakePointer) return;
     if (const auto hit = stage.hitAt(state_.camera, input_.pointer, input_.size))
-        std::ranges::copy(brushOutline(*hit, state_.brush.radius), std::back_inserter(stage.view().scene().outline));
+        stage.view().scene().brush = brushOutline(*hit, state_.brush.radius);
 }
 
 /// Writes the texts over the picture. With panels, they show what title and note would.
 void Workbench::writeTexts(const SessionView* view)
 {
     ViewScene& scene = object_.stage().view().scene();
-    if (!panels_.exist() || !state_.panels || state_.blind) {
+    if (!panels_.exist() || !hasColumn(state_)) {
         scene.title = object_.stem();
         scene.note  = note(view);
     }
@@ -338,12 +355,12 @@ void Workbench::writeTexts(const SessionView* view)
 
 std::string Workbench::note(const SessionView* view) const
 {
-    if (!notices_.current().empty()) return notices_.current();
     if (const GovernorFault fault = view ? governorFault(view->record) : GovernorFault::none;
         fault != GovernorFault::none) {
         const FaultAdvice advice = adviceOn(fault);
         return std::string("no force: ") + advice.reason + " " + advice.remedy + " R starts anew.";
     }
+    if (!notices_.current().empty()) return notices_.current();
     if (!notices_.faults().empty()) return notices_.faults().back();
     if (const std::string why = session_.unsolved(); inContact(view) && !why.empty())
         return "the plate cannot be solved here: " + why;

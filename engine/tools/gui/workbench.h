@@ -45,6 +45,7 @@ private:
     void                                       takeValues(const SceneValues& wanted);
     void                                       adopt(OpenedObject opened);
     void                                       useObject();
+    void                                       fixScales();
     void                                       tellAssumptions();
     void                                       touch();
     bool                                       keepPaint();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -79,18 +80,39 @@ private:
     double size_; // of the font [px]
 };
 
-void drawTitle(Annotator& to, const ViewScene& scene)
+/// Returns a text as lines that are not wider than that, unless a word is.
+std::vector<std::string> linesOf(const std::string& text, double most, double size)
 {
-    const double s = to.size();
-    if (scene.title.empty() && scene.note.empty()) return;
-    constexpr double kTitle = 1.25; // of the font's size [1]
-    const double     wide   = std::max(widthOfText(scene.title, kTitle * s), widthOfText(scene.note, s));
-    to.fade({0, 0}, {wide + 2 * s, scene.note.empty() ? 2.5 * s : 4.0 * s});
-    to.text({s, 1.8 * s}, scene.title, kTitle);
-    to.text({s, 3.3 * s}, scene.note);
+    std::vector<std::string> lines;
+    std::istringstream       words(text);
+    for (std::string word; words >> word;) {
+        if (lines.empty() || widthOfText(lines.back() + " " + word, size) > most)
+            lines.push_back(word);
+        else
+            lines.back() += " " + word;
+    }
+    return lines;
 }
 
-void drawColours(Annotator& to, const ViewColours& colours)
+/// \return the height that it takes up [px]
+double drawTitle(Annotator& to, const ViewScene& scene)
+{
+    const double s = to.size();
+    if (scene.title.empty() && scene.note.empty()) return 0;
+    constexpr double kTitle = 1.25, kLine = 1.4; // of the font's size [1]
+    const bool       fits = widthOfText(scene.note, s) <= to.width() - 2 * s;
+    const auto       note = fits ? std::vector{scene.note} : linesOf(scene.note, to.width() - 2 * s, s);
+    double           wide = widthOfText(scene.title, kTitle * s);
+    for (const std::string& line : note) wide = std::max(wide, widthOfText(line, s));
+    const double high = scene.note.empty() ? 2.5 * s : (4.0 + kLine * double(note.size() - 1)) * s;
+    to.fade({0, 0}, {wide + 2 * s, high});
+    to.text({s, 1.8 * s}, scene.title, kTitle);
+    for (std::size_t n = 0; n < note.size(); ++n) to.text({s, (3.3 + kLine * double(n)) * s}, note[n]);
+    return high;
+}
+
+/// \param top  height that others have taken up [px]
+void drawColours(Annotator& to, const ViewColours& colours, double top)
 {
     const double s = to.size(), high = 0.42 * to.height(), bar = 1.1 * s, tick = 0.35 * s;
     const Axis   axis(colours.range, colours.scale, colours.unit, 6);
@@ -98,9 +120,16 @@ void drawColours(Annotator& to, const ViewColours& colours)
     double       label = 0;
     for (const Tick& t : axis.ticks()) label = std::max(label, widthOfText(t.label, s));
     const double     wide = std::max(bar + tick + 0.4 * s + label, widthOfText(title, s));
-    const glm::dvec2 corner(to.width() - wide - s, 5.5 * s);
+    const glm::dvec2 corner(to.width() - wide - s, std::max(5.5 * s, top + 2.5 * s));
     to.fade(corner - glm::dvec2(0.7 * s, 2.2 * s), {wide + 1.4 * s, high + 3.2 * s});
     to.text(corner - glm::dvec2(0, 0.8 * s), title);
+    if (colours.goesOn) { // a tip, as of an arrow: deeper ones have its colour too
+        const double tip = 0.6 * s;
+        to.eachPixel(corner - glm::dvec2(0, tip), {bar, tip}, [&](Rgb8& pixel, glm::dvec2 at) {
+            const double from = (corner.y - at.y) / tip, aside = std::abs(at.x - corner.x - bar / 2) / (bar / 2);
+            if (aside < 1 - from) pixel = surfaceColour(1, colours.map);
+        });
+    }
     to.fill(corner - 1.0, {bar + 2, high + 2}, to.ink());
     to.eachPixel(corner, {bar, high},
                  [&](Rgb8& pixel, glm::dvec2 at) { pixel = surfaceColour(1 - (at.y - corner.y) / high, colours.map); });
@@ -136,6 +165,11 @@ std::vector<KeyEntry> keyOf(const ViewScene& scene)
         key.push_back({"patch", inkOn(scene.ground), [](glm::dvec2 p) {
                            const double side = std::max(std::abs(p.x), std::abs(p.y));
                            return side > 0.62 && side < 0.85;
+                       }});
+    if (!scene.brush.empty())
+        key.push_back({"brush", inkOn(scene.ground), [](glm::dvec2 p) {
+                           const double radius = glm::length(p);
+                           return radius > 0.65 && radius < 0.88;
                        }});
     const auto hasDots = [&](Rgb8 colour) {
         return std::ranges::any_of(scene.dots, [&](const ViewDot& dot) { return dot.colour == colour; });
@@ -234,9 +268,9 @@ double annotationSize(int height, double scale)
 void annotate(Image& image, const ViewScene& scene, const Camera& camera, double scale)
 {
     if (image.width < kLeastWidth * scale || image.height < kLeastHeight * scale) return;
-    Annotator to(image, scene.ground, scale);
-    drawTitle(to, scene);
-    if (!scene.values.empty()) drawColours(to, scene.colours);
+    Annotator    to(image, scene.ground, scale);
+    const double top = drawTitle(to, scene);
+    if (!scene.values.empty()) drawColours(to, scene.colours, top > 4.1 * to.size() ? top : 0); // beside a short title
     const glm::dvec2 taken = drawKey(to, scene);
     if (!scene.positions.empty()) drawLength(to, camera, taken); // an empty scene has no length
 }

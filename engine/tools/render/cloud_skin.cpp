@@ -17,10 +17,6 @@ namespace {
 
 constexpr std::size_t kNeighbours = 20; ///< of a fit, the point included: fewer are noisy, more round off edges
 
-/// Radius of a disc over the spacing: smaller ones leave stains where points are strewn at random, larger ones take
-/// longer [1].
-constexpr double kRadius = 2.1;
-
 /// Radius of a core over the spacing, at least and at most: of points strewn at random one place in 10^5 is farther
 /// from all of them than the latter [1].
 constexpr double kLeastCore = 0.7, kMostCore = 2.0;
@@ -65,7 +61,7 @@ CloudSkin::CloudSkin(std::span<const glm::dvec3> positions, const NeighbourIndex
     for (std::size_t n = 0; n < cores_.size(); ++n) {
         const double spacing = radii_[n];
         cores_[n]            = coreOf(positions, n, spacing);
-        radii_[n]            = std::max(kRadius * spacing, cores_[n]);
+        radii_[n]            = std::max(kDisc * spacing, cores_[n]);
     }
 }
 

@@ -42,6 +42,10 @@ public:
                std::span<glm::dvec3> normals) const;
 
 private:
+    /// Radius of a disc over the spacing, whose square is a point's area: smaller ones leave stains where points are
+    /// strewn at random, larger ones take longer [1].
+    static constexpr double kDisc = 2.1;
+
     [[nodiscard]] glm::dvec3 normalOf(std::span<const glm::dvec3> positions, std::size_t point) const;
     [[nodiscard]] double     coreOf(std::span<const glm::dvec3> positions, std::size_t point, double spacing) const;
 

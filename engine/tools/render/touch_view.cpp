@@ -17,6 +17,10 @@ namespace {
 /// Shares of the window: large enough to be seen, small enough to leave the dent free [1].
 constexpr double kArrow = 0.006, kOutline = 0.0016, kCue = 0.07;
 
+/// Share of even light where stiffness is painted, so that a stiff value in shade does not look like a softer one. Less
+/// than that of a figure about values alone: the shape of what is touched has to be seen too [1].
+constexpr double kLightOfStiffness = 0.6;
+
 constexpr double kDot = 0.22; ///< radius of a dot, of the point's core [1]
 
 /// Circles and spokes of the near half of the fitted sphere, as far as a window's edge reaches.
@@ -115,14 +119,17 @@ void TouchView::paint(double load, const TouchLook& look)
     scene_.oneSided  = oneSided_;
     scene_.ground    = look.ground;
     if (look.paint == ViewPaint::deflection) {
-        const double most = look.deepest > 0 ? look.deepest : std::abs(load) * surface_.mostResponse;
-        scene_.values     = deflections_;
-        scene_.colours    = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
+        constexpr double kRounding = 1e-9; // [1]
+        const double     most      = look.deepest > 0 ? look.deepest : std::abs(load) * surface_.mostResponse;
+        scene_.values              = deflections_;
+        scene_.colours             = {look.map, Scale::linear, {0, most > 0 ? most : 1e-3}, "deflection", "m"};
+        scene_.colours.goesOn      = std::abs(load) * surface_.mostResponse > (1 + kRounding) * most;
     } else if (look.paint == ViewPaint::stiffness) {
         constexpr double kWide = 5; // from such a ratio on a linear scale hides the soft end [1]
         const auto       range = rangeOf(stiffness_, Scale::logarithmic).value_or(ValueRange{});
         const Scale      scale = range.high > kWide * range.low ? Scale::logarithmic : Scale::linear;
         scene_.values          = stiffness_;
+        scene_.evenLight       = kLightOfStiffness;
         if (object_.cloud().kind() == StiffnessKind::modulus)
             scene_.colours = {look.map, scale, widened(range, scale), "Young's modulus", "Pa"};
         else

@@ -19,9 +19,10 @@ enum class Ground { light, dark };
 struct ViewColours {
     ColourMap   map   = ColourMap::viridis;
     Scale       scale = Scale::linear;
-    ValueRange  range;    ///< its ends [unit]
-    std::string quantity; ///< "deflection"
-    std::string unit;     ///< SI; the legend chooses the prefix
+    ValueRange  range;          ///< its ends [unit]
+    std::string quantity;       ///< "deflection"
+    std::string unit;           ///< SI; the legend chooses the prefix
+    bool        goesOn = false; ///< some values lie above the range
 };
 
 struct ViewSegment {
@@ -68,6 +69,7 @@ struct ViewScene {
     std::optional<ViewSegment> normal;
     double                     arrowRadius = 0;   ///< of the force's shaft; the normal's is thinner [m]
     std::vector<ViewSegment>   outline;           ///< of the patch
+    std::vector<ViewSegment>   brush;             ///< rim of what paints
     std::vector<ViewSegment>   sphere;            ///< lines of the fitted sphere
     std::vector<ViewSegment>   bulging, hollow;   ///< strokes along principal curvatures
     double                     outlineRadius = 0; ///< of all lines [m]

@@ -120,6 +120,7 @@ std::vector<ShapeCorner> shapesOf(const ViewScene& scene)
     if (scene.force) addArrow(corners, *scene.force, scene.arrowRadius, kForceColour);
     if (scene.normal) addArrow(corners, *scene.normal, kThinner * scene.arrowRadius, kNormalColour);
     for (const ViewSegment& line : scene.outline) addLine(corners, line, scene.outlineRadius, inkOn(scene.ground));
+    for (const ViewSegment& line : scene.brush) addLine(corners, line, scene.outlineRadius, inkOn(scene.ground));
     for (const ViewSegment& line : scene.sphere) addLine(corners, line, scene.outlineRadius, kSphereColour);
     const std::size_t shining = corners.size();
     for (const ViewSegment& line : scene.bulging) addLine(corners, line, kStroke * scene.outlineRadius, kBulgingColour);

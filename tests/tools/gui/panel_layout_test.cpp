@@ -51,6 +51,15 @@ TEST(PanelLayout, ABallIsFramedWithinWhatThePanelsLeaveFree)
             }
 }
 
+TEST(PanelLayout, AHuntHasAllOfThePicture)
+{
+    ViewState state;
+    state.blind            = true; // and no panels, although nobody has hidden them
+    const PictureArea area = freeArea(state, {1280, 720}, 1);
+    EXPECT_EQ(area.corner, glm::dvec2(0));
+    EXPECT_EQ(area.size, glm::dvec2(1280, 720));
+}
+
 TEST(PanelLayout, TwiceTheScaleIsTwiceTheSize)
 {
     ViewState state;

@@ -343,12 +343,20 @@ TEST_F(PanelsClick, NothingIsThereWithoutPanelsButAFault)
     frame_.beginWithoutWindow(kSize, {{60, 10}, false});
     EXPECT_FALSE(ImGui::GetIO().WantCaptureMouse);
     frame_.end();
+    const auto lineTakesPointer = [this] {
+        settle();
+        frame({60, 10}, false);
+        frame_.beginWithoutWindow(kSize, {{60, 10}, false});
+        const bool takes = ImGui::GetIO().WantCaptureMouse;
+        frame_.end();
+        return takes;
+    };
     content_.faults = {"a fault"};
-    settle();
-    frame({60, 10}, false);
-    frame_.beginWithoutWindow(kSize, {{60, 10}, false});
-    EXPECT_TRUE(ImGui::GetIO().WantCaptureMouse) << "the line that says so";
-    frame_.end();
+    EXPECT_FALSE(lineTakesPointer()) << "the picture's note says so, and nothing covers it";
+    state_.texts = false;
+    EXPECT_TRUE(lineTakesPointer()) << "the line that says so";
+    state_.panels = state_.blind = true;
+    EXPECT_TRUE(lineTakesPointer()) << "in a hunt too";
 }
 
 } // namespace

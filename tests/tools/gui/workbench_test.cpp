@@ -35,6 +35,9 @@ public:
         ++pictures;
         camera = now;
         points = scene.positions.size();
+        end    = scene.colours.range.high;
+        brush  = !scene.brush.empty();
+        patch  = !scene.outline.empty();
         if (scene.note != said) said = scene.note;
         notes += said + "\n";
         return true;
@@ -42,9 +45,10 @@ public:
 
     [[nodiscard]] bool said_(const std::string& words) const { return notes.find(words) != std::string::npos; }
 
-    bool        isLost   = false;
+    bool        isLost = false, brush = false, patch = false; ///< the rims of both are shown
     int         pictures = 0;
     std::size_t points   = 0; ///< of what is shown
+    double      end      = 0; ///< of the colours [m]
     Camera      camera;
     std::string said, notes; ///< now; all of it
 };
@@ -280,6 +284,11 @@ TEST_F(WorkbenchTest, AfterAFaultOfTheGovernorThereIsAForceAgainByR)
     step("a fast hand", [this](WindowInput&) { hand_.hurries = true; });
     wait("no force", [this] { return hand_.last == 0; });
     wait("why", [this] { return screen_.said_("The hand moved faster than 1.2 m/s. Hold it still"); });
+    press(kF7Key); // has a message
+    rest(0.3);
+    step("still why", [this](WindowInput&) {
+        EXPECT_TRUE(screen_.said.starts_with("no force: The hand moved faster")) << screen_.said;
+    });
     step("a slow one", [this](WindowInput&) { hand_.hurries = false; });
     rest(0.5);
     step("it stays off", [this](WindowInput&) { EXPECT_EQ(hand_.last, 0); });
@@ -417,6 +426,46 @@ TEST_F(WorkbenchTest, PaintStaysFromSessionToSessionAndIsAskedForBeforeItIsLost)
     EXPECT_EQ(report.said, "") << "nothing is left to be saved";
     const LoadedCloud painted = readCloud("sheet-painted-0001.ply", {});
     EXPECT_GT(std::ranges::max(painted.cloud.stiffness()), 1.01 * std::ranges::min(painted.cloud.stiffness()));
+}
+
+TEST_F(WorkbenchTest, PaintIsDiscardedByTheRequestThatWasWarnedOfAndByNoOther)
+{
+    settings_.values["stiffness"] = kRamp;
+    const auto warned             = [this](const std::string& of) {
+        return [=, this] { return complainedOf("asking again for " + of + " discards it"); };
+    };
+    const auto asksAgain = [&](const std::string& of) {
+        rest(0.3);
+        step("it is still there", [this](WindowInput&) {
+            EXPECT_EQ(screen_.points, 2000U);
+            complaints_.clear();
+        });
+        drop(of);
+        wait("a question", warned(of));
+    };
+    paint();
+    press('B');
+    drop("sample:palm");
+    wait("a question", warned("sample:palm"));
+    asksAgain("sample:ellipsoid");
+    press('R'); // leaves the warning
+    asksAgain("sample:ellipsoid");
+    step("other values", [this](WindowInput&) { bench_->change({{"thickness", "5 mm"}}); });
+    asksAgain("sample:ellipsoid");
+    drop("sample:ellipsoid");
+    wait("the ellipsoid", [this] { return screen_.points != 2000; });
+    run();
+}
+
+TEST_F(WorkbenchTest, TheBrushsRimIsNotTakenForThePatchs)
+{
+    wait("the object", [this] { return screen_.points == 2000; });
+    press('B');
+    wait("the brush", [this] { return screen_.brush; });
+    step("no patch", [this](WindowInput&) { EXPECT_FALSE(screen_.patch); });
+    press('B');
+    wait("no brush", [this] { return !screen_.brush; });
+    run();
 }
 
 TEST_F(WorkbenchTest, ARecordingEndsWhereAStrokeIsPaintedAgain)
@@ -625,6 +674,15 @@ TEST_F(WorkbenchTest, AValueThatASceneDoesNotTakeIsExplainedAndTheSessionGoesOn)
 
     EXPECT_TRUE(holds(complaints_, {"9 km", "1e-6 to 1 m", "such as 4 mm"}))
         << "found, expected, remedy: " << complaints_;
+}
+
+TEST_F(WorkbenchTest, ColoursReachAsFarAsTheTheoryIsTrusted)
+{
+    settings_.values["thickness"] = "2 mm";
+    wait("half the thickness", [this] { return std::abs(screen_.end - 1e-3) < 1e-9; });
+    step("large dents", [this](WindowInput&) { bench_->change({{"large", "on"}}); });
+    wait("two thicknesses", [this] { return std::abs(screen_.end - 4e-3) < 1e-9; });
+    run();
 }
 
 TEST_F(WorkbenchTest, ALawGoesBackToTheCloudsOwn)

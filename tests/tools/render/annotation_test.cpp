@@ -90,6 +90,43 @@ TEST(Annotation, TheKeyNamesOnlyWhatIsThere)
     EXPECT_EQ(count(image, kForceColour), 0u);
 }
 
+TEST(Annotation, ColoursThatGoOnEndInATip)
+{
+    const double value = 1;
+    ViewScene    scene;
+    scene.values          = {&value, 1};
+    scene.colours         = {ColourMap::cividis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+    const auto ofTheTopIn = [&] {
+        Image image(640, 480, kGround);
+        annotate(image, scene, {});
+        return count(image, surfaceColour(1, ColourMap::cividis));
+    };
+    const std::size_t plain = ofTheTopIn();
+    scene.colours.goesOn    = true;
+    EXPECT_GT(ofTheTopIn(), plain + 10);
+}
+
+TEST(Annotation, ALongNoteGoesOnInFurtherLinesAboveTheColours)
+{
+    const double value = 1;
+    ViewScene    scene;
+    scene.title       = "a title";
+    scene.note        = "short";
+    const auto lowest = [&](bool colours) { // row of ink, or of the middle of the map
+        scene.values  = colours ? std::span(&value, 1) : std::span<const double>();
+        scene.colours = {ColourMap::cividis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+        Image image(320, 480, kGround);
+        annotate(image, scene, {});
+        const Rgb8 sought = colours ? surfaceColour(1, ColourMap::cividis) : inkOn(scene.ground);
+        const auto last   = std::find(image.pixels.rbegin(), image.pixels.rend(), sought);
+        return int(image.pixels.rend() - last) / 320;
+    };
+    const int once = lowest(false), bar = lowest(true);
+    scene.note = "no force: The hand moved faster than 1.2 m/s. Hold it still, then start anew. R starts anew.";
+    EXPECT_GE(lowest(false) - once, 15) << "a second line";
+    EXPECT_GT(lowest(true), bar) << "the colours make room";
+}
+
 TEST(Annotation, OnlyWhatHasPointsHasALength)
 {
     const glm::dvec3 point(0);

@@ -183,6 +183,35 @@ TEST(CloudSkin, ASheetABowlAndAKnifesEdgeAreSeenFromBothSides)
     }
 }
 
+/// Points strewn over a tube without ends; with lids, over a tin.
+std::vector<glm::dvec3> tube(std::size_t points, double length, bool lids)
+{
+    std::mt19937                           random(7);
+    std::uniform_real_distribution<double> uniform;
+    std::vector<glm::dvec3>                positions(points);
+    for (glm::dvec3& p : positions) {
+        const double around = 2 * std::numbers::pi * uniform(random);
+        const bool   onLid  = lids && uniform(random) * (length + kRadius) < kRadius;
+        const double r = onLid ? kRadius * std::sqrt(uniform(random)) : kRadius, along = uniform(random);
+        p = {r * std::cos(around), r * std::sin(around), length * (onLid ? std::round(along) : along)};
+    }
+    return positions;
+}
+
+TEST(CloudSkin, ATubeIsSeenFromInsideAndATinIsNot)
+{
+    for (const std::size_t points : {2000U, 20000U})
+        for (const double length : {0.04, 0.2, 0.4})
+            for (const bool lids : {false, true}) {
+                const auto           positions = tube(points, length, lids);
+                const NeighbourIndex index(positions);
+                const CloudSkin      skin(positions, index);
+                auto                 normals = skin.normals(positions);
+                const auto           closed  = skin.turnOutwards(positions, normals);
+                EXPECT_EQ(std::ranges::count(closed, lids ? 0 : 1), 0) << points << ", " << length << " m, " << lids;
+            }
+}
+
 TEST(CloudSkin, OfTwoObjectsEachIsAskedByItself)
 {
     std::vector<glm::dvec3> positions = ball(4000);
