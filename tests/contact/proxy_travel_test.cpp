@@ -36,6 +36,23 @@ int missedPresses(double gap)
     return missed;
 }
 
+TEST(ProxyTravel, NothingIsFeltInFreeSpaceHoweverFarTheSphereLags)
+{
+    Sheet        sheet(Layout::random, 3);
+    const Points points = sheet.whole();
+    for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere, ProxyForm::plainSphere}) {
+        Touch  touch(points, {form});
+        double lag = 0, pull = 0;
+        touch.start({0, 0, 20});
+        touch.move({0, 0, 6020}, 120, [&] {
+            lag  = std::max(lag, glm::length(touch.hip() - touch.at()));
+            pull = std::max(pull, glm::length(touch.pull()));
+        });
+        EXPECT_EQ(pull, 0);
+        EXPECT_TRUE(lag > 40 || form == ProxyForm::hybrid) << "or the test shows nothing";
+    }
+}
+
 TEST(ProxyTravel, PressesFindTheNearSheet)
 {
     EXPECT_EQ(missedPresses(2), 0) << "of 100; prototype: 2";
