@@ -36,6 +36,23 @@ int missedPresses(double gap)
     return missed;
 }
 
+/// There a step of 1e-9 spacings is less than the last digit of a coordinate.
+TEST(ProxyTravel, ASurfaceThousandsOfKilometresFromTheOriginIsReached)
+{
+    Sheet        sheet(Layout::random, kFirstSeed);
+    const Points points = sheet.whole();
+    for (const double far : {1e8, 1e9, 5e9}) { // spacings of 1 mm
+        Touch touch(points, {}, glm::dvec3(far));
+        int   limited = 0;
+        for (int press = 0; press < 10; ++press) {
+            touch.start({2.0 * press - 9, 0.3 * press, 12});
+            touch.move({2.0 * press - 9, 0.3 * press, -5}, 0.1, [&] { limited += touch.state().limited; });
+            EXPECT_TRUE(touch.touching() && std::abs(touch.at().z) < 0.01) << far << ", " << press;
+        }
+        EXPECT_EQ(limited, 0) << far << ": ticks whose rounds were used up by a touch that was met again and again";
+    }
+}
+
 TEST(ProxyTravel, NothingIsFeltInFreeSpaceHoweverFarTheSphereLags)
 {
     Sheet        sheet(Layout::random, 3);
