@@ -21,6 +21,11 @@ constexpr double kReach = 3;
 /// random sheet one in 10^5 does. The ball then grows by kGrowth until the ratio reaches kPlanar.
 constexpr double kNarrow = 0.08, kPlanar = 0.3, kGrowth = 1.4;
 
+/// Points besides the middle one that the first ball of a point on a line holds at least [1]: at its very end twelve,
+/// as the spacing follows from the sixth neighbour. A stray has fewer: its ball would grow until it reached the object,
+/// and every hand would meet it in the air.
+constexpr std::size_t kFewestInLine = 4;
+
 /// Points within a spacing of each other that share the shape about one of them.
 constexpr std::size_t kSharing = 8;
 
@@ -149,9 +154,12 @@ void SurfaceSurvey::Measuring::takeAway(std::uint32_t point)
     for (std::size_t k = 0; k < found_.size(); k += step) away_.push_back(positions_[found_[k]] - positions_[point]);
 }
 
-/// Widens the ball of a point on a line until its points span a plane, and takes the spacing of the lines.
+/// Widens the ball of a point on a line until its points span a plane, and takes the spacing of the lines. The ball of
+/// a stray stays as it is.
+/// \param shape  of the points that away_ holds
 LocalShape SurfaceSurvey::Measuring::widened(std::uint32_t point, LocalShape shape)
 {
+    if (away_.size() <= kFewestInLine) return shape;
     const double spacing = survey_.spacings_[point];
     double       radius  = kReach * spacing;
     while (shape.narrow < kPlanar && radius < kWidest * spacing) {

@@ -13,7 +13,8 @@ namespace palp {
 /// What the neighbours of each point say about the surface there, measured once when an object is made.
 ///
 /// Spacing: see localSpacings(). Where the points lie along lines (scan lines, the contours of a stack of slices), it
-/// is that of the lines: the ball about the point grows until its points span a plane.
+/// is that of the lines: the ball about the point grows until its points span a plane. A stray has that of the
+/// others.
 /// Normal: of the principal axes of the points within three spacings, (1 - d^2/r^2)^2 weighted. Its sign counts where
 /// the point is `sided`: by a given normal, or because another layer of the object is closer behind it than some
 /// spacings. Elsewhere whoever needs the sign carries it along the surface, as SurfaceFlood does.

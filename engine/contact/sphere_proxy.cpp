@@ -119,7 +119,7 @@ void SphereProxy::step(const glm::dvec3& hip) noexcept
     state.slipping = friction_.slipping;
     state.fade     = state.touching ? 1 : 0;
     state.support  = state.fade;
-    state.pull     = state.position - hip;
+    state.pull     = state.touching ? state.position - hip : glm::dvec3(0); // in free space it may lag behind the hand
 }
 
 } // namespace

@@ -17,7 +17,6 @@ public:
     static constexpr double kSpan = 10e-3; ///< [s]
 
     void add(double time, const glm::dvec3& position) noexcept; ///< [s], [m]; a time that does not advance is omitted
-    void forget() noexcept { count_ = 0; }                      ///< the finger left the surface
 
     /// Returns the velocity [m/s] from the oldest position of the last kSpan to the newest; zero with fewer than two.
     [[nodiscard]] glm::dvec3 velocity() const noexcept;

@@ -100,6 +100,7 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     LocalCompliance               answer{std::exp(hand(compliance_, here.lnCompliance, now.time)),
                            std::exp(hand(contact_, here.lnContactStiffness, now.time)), here.clamped,
                            now.time - (guessing_ ? landed_ : table_->time), guessing_ ? 0 : table_->chart.curvature};
+    answer.guessed = guessing_;
     if (here.stiffening) answer.stiffening = std::max(0.0, hand(stiffening_, *here.stiffening, now.time));
     return answer;
 }

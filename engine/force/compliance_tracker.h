@@ -39,6 +39,8 @@ struct LocalCompliance {
     double curvature        = 0;     ///< [1/m] of the table's chart, see Chart
 
     std::optional<double> stiffening{}; ///< b [1/m]; empty: it is the scene's
+
+    bool guessed = false; ///< the homogeneous law answers, for want of a table
 };
 
 /// Compliance at 1 kHz from tables at 30 to 60 Hz.

@@ -219,13 +219,18 @@ void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand, const WantedF
 
 /// Returns by how much the plate's answer is too old to be felt [s]; at most 0 while it is not. Time in the air does not
 /// count, because nothing is asked then. A deformation at less than 12 Hz has three of its periods.
-double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept
+///
+/// A contact that begins with the homogeneous law, or with nothing, has all of that time anew. One that begins on a
+/// table has what its predecessors left of it: a table that is too old is not felt again because the hand was lifted.
+double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest, bool tableInUse) noexcept
 {
     constexpr double kOldest = 0.25, kPeriods = 3; // [s] a hand moves 5 cm in it; [1]
     if (newest && newest->table.sequence != answered_ && newest->table.usable()) {
         answered_ = newest->table.sequence;
         asked_    = now.time - newest->table.time;
     }
+    if (touching && !touched_ && !tableInUse) asked_ = 0;
+    touched_ = touching;
     if (touching) asked_ += now.dt;
     return touching ? asked_ - std::max(kOldest, kPeriods * patchPeriod_) : 0;
 }
@@ -245,7 +250,9 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     const WantedForce want = wantedForce(handed, now.dt, hand, held);
     leanOn(held, hand, want);
 
-    const GovernorInput  in     = governorInput(now, hand, held, want, newest);
+    GovernorInput in = governorInput(now, hand, held, want);
+    in.overdue       = tableOverdue(now, touch.touching, newest, handed && !handed->guessed);
+
     const GovernorOutput out    = governor_.step(in);
     TickRecord           record = recordOf(now, hand, held, want, out);
     if (newest && touch.touching) {
@@ -270,7 +277,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
 }
 
 GovernorInput ForceHalf::governorInput(const TickTime& now, const Hand& hand, const ProxyContact& held,
-                                       const WantedForce& want, const PatchUpdate* newest) noexcept
+                                       const WantedForce& want) noexcept
 {
     GovernorInput in;
     in.force           = want.force;
@@ -282,7 +289,6 @@ GovernorInput ForceHalf::governorInput(const TickTime& now, const Hand& hand, co
     in.clutched        = hand.clutched;
     in.dt              = now.dt;
     in.forceAge        = std::max(0.0, now.time - held.touch.time); // above 0 if the proxy has a thread of its own
-    in.overdue         = tableOverdue(now, held.touch.touching, newest);
     in.missedExchanges = hand.missed;
     in.admittedEnergy  = want.admitted / scale_;
     in.storedEnergy    = want.stored / scale_;

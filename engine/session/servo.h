@@ -205,9 +205,10 @@ private:
     [[nodiscard]] bool isSpring() const noexcept { return linear_ && stiffening_ == 0 && shape_.step == 0; }
     void               follow(const PatchUpdate* newest, double dt, bool touching) noexcept;
 
-    [[nodiscard]] double        tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest) noexcept;
+    [[nodiscard]] double        tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest,
+                                             bool tableInUse) noexcept;
     [[nodiscard]] GovernorInput governorInput(const TickTime& now, const Hand& hand, const ProxyContact& held,
-                                              const WantedForce& want, const PatchUpdate* newest) noexcept;
+                                              const WantedForce& want) noexcept;
     [[nodiscard]] TickRecord    recordOf(const TickTime& now, const Hand& hand, const ProxyContact& held,
                                          const WantedForce& want, const GovernorOutput& out) const noexcept;
 
@@ -228,12 +229,13 @@ private:
     EnergyTank        tank_;
     RelaxingContact   relaxing_;
     ForceGovernor     governor_;
-    double            forceShare_ = 1; ///< [1] of the elastic force that the last tick had
-    ProxyContact      last_;           ///< of the tick before
-    glm::dvec3        lastHand_{};     ///< [m]
-    std::uint64_t     answered_ = 0;   ///< sequence of the last table
-    double            asked_    = 0;   ///< [s] of contact since that of the last table, or since the first
-    int               pressed_  = 0;   ///< ticks that the operator's button has been down
+    double            forceShare_ = 1;   ///< [1] of the elastic force that the last tick had
+    ProxyContact      last_;             ///< of the tick before
+    glm::dvec3        lastHand_{};       ///< [m]
+    std::uint64_t     answered_ = 0;     ///< sequence of the last table
+    double            asked_    = 0;     ///< [s] of contact since that of the last table, or since it began without one
+    bool              touched_  = false; ///< in the tick before
+    int               pressed_  = 0;     ///< ticks that the operator's button has been down
 };
 
 /// [1] of the arm's weight that is carried. A calibration errs by one percent; carried whole, an arm that is let go

@@ -211,6 +211,17 @@ TEST(SurfaceSurvey, TheSpacingOfLinesIsTheirDistance)
     }
 }
 
+/// The ball of a stray is not widened as that of a point on a line is, or it would reach down to the sheet.
+TEST(SurfaceSurvey, AStrayHasTheSpacingOfTheOthers)
+{
+    Points points = sheet(1);
+    for (const double height : {5, 10, 20, 30}) {
+        points.emplace_back((height - 15) * kSpacing, 0, height * kSpacing);
+        const SurfaceSurvey survey = surveyOf(points);
+        EXPECT_LT(survey.spacing(points.size() - 1), 1.5 * kSpacing) << "at 30 spacings it had 14";
+    }
+}
+
 TEST(SurfaceSurvey, WhatIsNoSurfaceIsSaidByItsUsers)
 {
     const Points points(100, glm::dvec3(1, 2, 3));

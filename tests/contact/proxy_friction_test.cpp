@@ -78,6 +78,20 @@ TEST(ProxyFriction, SlidesWhenPulledBeyondTheConeAndSaysSo)
     EXPECT_TRUE(touch.state().slipping);
 }
 
+TEST(ProxyFriction, NothingSlipsWhereThereIsNone)
+{
+    Sheet        sheet(Layout::random, 1);
+    const Points points = sheet.over(-20, 25, -12, 12);
+    for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere}) {
+        Touch touch(points, {form});
+        int   slipping = 0;
+        touch.start({-8, 0.3, 5});
+        touch.move({-8, 0.3, -2}, 0.1);
+        touch.move({8, 0.3, -2}, 0.1, [&] { slipping += touch.state().slipping; });
+        EXPECT_EQ(slipping, 0) << "of 160 ticks";
+    }
+}
+
 /// What a proxy slides beyond the hand's own way is a step of the force.
 TEST(ProxyFriction, SlidesAfterAHandAtRestByATenthOfItsDistancePerTick)
 {

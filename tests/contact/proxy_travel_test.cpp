@@ -36,6 +36,40 @@ int missedPresses(double gap)
     return missed;
 }
 
+/// There a step of 1e-9 spacings is less than the last digit of a coordinate.
+TEST(ProxyTravel, ASurfaceThousandsOfKilometresFromTheOriginIsReached)
+{
+    Sheet        sheet(Layout::random, kFirstSeed);
+    const Points points = sheet.whole();
+    for (const double far : {1e8, 1e9, 5e9}) { // spacings of 1 mm
+        Touch touch(points, {}, glm::dvec3(far));
+        int   limited = 0;
+        for (int press = 0; press < 10; ++press) {
+            touch.start({2.0 * press - 9, 0.3 * press, 12});
+            touch.move({2.0 * press - 9, 0.3 * press, -5}, 0.1, [&] { limited += touch.state().limited; });
+            EXPECT_TRUE(touch.touching() && std::abs(touch.at().z) < 0.01) << far << ", " << press;
+        }
+        EXPECT_EQ(limited, 0) << far << ": ticks whose rounds were used up by a touch that was met again and again";
+    }
+}
+
+TEST(ProxyTravel, NothingIsFeltInFreeSpaceHoweverFarTheSphereLags)
+{
+    Sheet        sheet(Layout::random, 3);
+    const Points points = sheet.whole();
+    for (const ProxyForm form : {ProxyForm::hybrid, ProxyForm::sphere, ProxyForm::plainSphere}) {
+        Touch  touch(points, {form});
+        double lag = 0, pull = 0;
+        touch.start({0, 0, 20});
+        touch.move({0, 0, 6020}, 120, [&] {
+            lag  = std::max(lag, glm::length(touch.hip() - touch.at()));
+            pull = std::max(pull, glm::length(touch.pull()));
+        });
+        EXPECT_EQ(pull, 0);
+        EXPECT_TRUE(lag > 40 || form == ProxyForm::hybrid) << "or the test shows nothing";
+    }
+}
+
 TEST(ProxyTravel, PressesFindTheNearSheet)
 {
     EXPECT_EQ(missedPresses(2), 0) << "of 100; prototype: 2";

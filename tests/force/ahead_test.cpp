@@ -20,8 +20,6 @@ TEST(RecentMotion, IsTheVelocityOverTheLastTenMilliseconds)
     EXPECT_NEAR(motion.velocity().x, 0.1, 1e-12) << "half of the last 10 ms";
     for (int n = 106; n <= 110; ++n) motion.add(n * 1e-3, {x, 0, 0});
     EXPECT_NEAR(motion.velocity().x, 0, 1e-12);
-    motion.forget();
-    EXPECT_EQ(glm::length(motion.velocity()), 0);
 }
 
 TEST(RecentMotion, TakesASlowClockAndLeavesOutATimeThatDoesNotAdvance)

@@ -407,6 +407,30 @@ TEST(Servo, AForceWhoseTableIsTooOldFadesAndEngagesAnewOnceThereAreTables)
     EXPECT_NEAR(again, most, 0.02 * most);
 }
 
+/// The homogeneous law answers a contact for a quarter of a second, also the contact after one that waited in vain.
+TEST(Servo, EveryContactWithoutATableHasItsOwnQuarterOfASecond)
+{
+    const SheetSession   session(sheetScene(kWart));
+    const HomogeneousLaw first({{{0, 0, 0}, std::log(2e-3), std::log(3000.0), 0}}, 0.02);
+    Servo                servo(session.object, session.scene, {}, &first);
+    double               time = 0, height = 10e-3; // [s], [m]
+    const auto           mostForce = [&](double goal, int ticks) {
+        double most = 0;
+        for (int tick = 0; tick < ticks; ++tick) {
+            height += std::clamp(goal - height, -1e-3, 1e-3);
+            most = std::max(most, glm::length(servo.tick({time += 1e-3, 1e-3}, {{0, 0, height}, {}}, nullptr).force));
+        }
+        return most;
+    };
+    (void)mostForce(10e-3, 2500);
+    const double once = mostForce(-1e-3, 200);
+    EXPECT_GT(once, 0.1);
+    EXPECT_GT(mostForce(-1e-3, 200), 0) << "for some 50 ms more";
+    EXPECT_EQ(mostForce(-1e-3, 100), 0) << "it waits in vain";
+    EXPECT_EQ(mostForce(10e-3, 2500), 0);
+    EXPECT_NEAR(mostForce(-1e-3, 200), once, 0.01 * once);
+}
+
 TEST(Servo, AHandThatIsNotANumberEndsAtZeroForceWithAReason)
 {
     const SheetSession session(sheetScene(kWart));

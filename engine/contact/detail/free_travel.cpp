@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glm/geometric.hpp>
 
@@ -51,9 +52,13 @@ glm::dvec3 FreeTravel::roll(const glm::dvec3& from, const glm::dvec3& goal) noex
     const glm::dvec3 to      = stepTowards(from, goal, kLongestRoll * largest);
     const glm::dvec3 way     = to - from;
     const double     share   = points_.firstTouch(from, to);
-    // A touch must put the point into the ball, or the next round would meet the same point again.
-    constexpr double kInto = 1e-9; // [largest spacing]
-    return share < 1 ? stepTowards(from + share * way, to, kInto * largest) : to;
+    if (!(share < 1)) return to;
+    // A touch must put the point into the ball, or the next round would meet the same point again: also far from the
+    // origin, where less than the coordinates' last digit is no step.
+    constexpr double kInto = 1e-9, kDigits = 4; // [largest spacing]; [last digits of the largest coordinate]
+    const double     most = std::max({std::abs(from.x), std::abs(from.y), std::abs(from.z)});
+    const double     into = std::max(kInto * largest, kDigits * std::numeric_limits<double>::epsilon() * most);
+    return stepTowards(from + share * way, to, into);
 }
 
 Arrival FreeTravel::go(const glm::dvec3& from, const glm::dvec3& to, Surfaces& surfaces) noexcept

@@ -24,9 +24,10 @@ struct Friction {
     {
         constexpr double kReached = 1.001; // [1] the iteration ends this close to the cone
         constexpr double kLetGo   = 20;    // [ticks] from `hold` to `slip`
-        const double     length   = glm::length(way);
-        now_                      = slipping ? std::max(slip, now_ - (hold - slip) / kLetGo) : hold;
-        slipping                  = length > (slipping ? kReached : 1.0) * now_ * depth;
+        if (hold == 0) return;             // without friction everything slides, and nothing slips
+        const double length = glm::length(way);
+        now_                = slipping ? std::max(slip, now_ - (hold - slip) / kLetGo) : hold;
+        slipping            = length > (slipping ? kReached : 1.0) * now_ * depth;
     }
 
     /// Returns the part of the way that friction leaves [m].
