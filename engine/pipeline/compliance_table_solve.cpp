@@ -119,13 +119,14 @@ ComplianceTable::Entries windowOf(const Shell& shell, double below, const Footpr
     return own;
 }
 
-/// Returns l^-4 of a shell as curved as the object is at a typical place, without the foundation [1/m^4]; 0 if its
-/// curvature ends no dents there.
-double curvedAs(const SoftObject& object, const PatchSettings& settings, double rigidity)
+/// Returns l^-4 of a shell as curved as the object is at a typical place, by its curvature alone [1/m^4]; 0 if that ends no
+/// dents there.
+double curvedAs(const SoftObject& object, PatchSettings settings)
 {
     if (settings.theory != Theory::shell) return 0;
-    const auto dents = dentLengths(object, settings);
-    return dents ? std::max(0.0, std::pow(dents->typical, -4) - settings.foundation / rigidity) : 0;
+    settings.foundation = 0; // which ends them where the sheet is soft, however flat it is
+    const auto dents    = dentLengths(object, settings);
+    return dents ? std::pow(dents->typical, -4) : 0;
 }
 
 } // namespace
@@ -141,11 +142,11 @@ FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings&
                             settings.foundation, NodeField(grid, geometricMean(rigidities))};
     const double    perRigidity =
         contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);
-    FootprintLattice lattice =
-        solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver, settings.tolerance, whole,
-                     whole ? 0 : curvedAs(object, settings, homogeneous.rigidity(0, 0)));
+    const double     curved  = curvedAs(object, settings);
+    FootprintLattice lattice = solveLattice(homogeneous, {settings.footprintRadius, side, perRigidity}, solver,
+                                            settings.tolerance, whole, curved);
     // The window is twice as wide as the object, and what a clamped plate gives way by grows with its area.
-    if (whole && settings.foundation == 0) lattice.middles.front() -= std::log(4.0);
+    if (whole && settings.foundation == 0 && curved == 0) lattice.middles.front() -= std::log(4.0);
     return lattice;
 }
 
@@ -176,7 +177,6 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
             lattice.loads.emplace_back(loadAt(x, z), slopeOf(loadAt(x + dx, z), loadAt(x - dx, z), 2 * dx),
                                        slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
         }
-    // The middle rung comes first: a solver counts rigidities in units of the first, and it must be exactly one.
     const int reach    = homogeneous.foundation > 0 && !wholeObject ? kRungs : 0;
     lattice.rigidity   = homogeneous.rigidity(0, 0);
     lattice.foundation = homogeneous.foundation;

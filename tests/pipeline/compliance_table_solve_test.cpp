@@ -192,9 +192,33 @@ TEST(TableSolve, TheMiddlesOfALatticeAreThoseOfAShellAsCurvedAsTheObject)
         EXPECT_NEAR(std::exp(at.lnCompliance(sphere.rigidity(0))) / felt, 1, 0.15) << foundation;
         EXPECT_NEAR(at.lnCompliance(2 * sphere.rigidity(0)) - at.lnCompliance(sphere.rigidity(0)), -std::log(2.0),
                     foundation > 0 ? 0.2 : 1e-12);
+        PatchSettings whole = settings;
+        whole.windowOf      = WindowOf::object;
+        EXPECT_NEAR(std::exp(footprintLattice(sphere, whole, 1, host).lnCompliance(sphere.rigidity(0))) / felt, 1, 0.2);
         settings.theory = Theory::plate;
         EXPECT_GT(std::exp(footprintLattice(sphere, settings, 1, host).lnCompliance(sphere.rigidity(0))) / felt, 2);
     }
+}
+
+/// A foundation ends dents where a sheet is soft: that is no curvature, which stiff places would feel nine times.
+TEST(TableSolve, TheMiddlesOfAFlatShellAreThoseOfAPlateWhateverItsStiffnesses)
+{
+    PlateSolver             host("host");
+    std::vector<glm::dvec3> points;
+    std::vector<double>     moduli;
+    for (int i = -40; i <= 40; ++i)
+        for (int j = -40; j <= 40; ++j) {
+            points.emplace_back(1e-3 * i, 1e-3 * j, 0);
+            moduli.push_back(i < 8 ? 3e4 : 3e6);
+        }
+    const SoftObject sheet(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
+                           Material{.thickness = 2e-3, .poissonRatio = 0.45});
+    PatchSettings    settings{.foundation = 3e5, .window = 60e-3, .cells = 48, .theory = Theory::shell};
+    const auto       shell = footprintLattice(sheet, settings, 1, host);
+    settings.theory        = Theory::plate;
+    const auto plate       = footprintLattice(sheet, settings, 1, host);
+    for (const double rigidity : {sheet.rigidity(0), sheet.rigidity(sheet.size() - 1)})
+        EXPECT_NEAR(shell.lnCompliance(rigidity), plate.lnCompliance(rigidity), 1e-6);
 }
 
 /// The floor of every measurement of perception, J = (largest - smallest stiffness within 5 mm) / 7 %, the plate part.

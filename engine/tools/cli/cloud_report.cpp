@@ -32,7 +32,7 @@ void refuseSourceAsTarget(const std::string& option, const std::string& source, 
     std::error_code none; // no such file: nothing is lost
     if (!std::filesystem::equivalent(source, target, none) || none) return;
     throw Error(option + ": " + shownText(target, kMostOfPath) +
-                " is read as well, and would be overwritten; name another file");
+                " is read as well, and would be overwritten; choose another name");
 }
 
 void refuseSameTarget(const std::string& first, const std::string& one, const std::string& second,

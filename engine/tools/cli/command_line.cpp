@@ -35,8 +35,7 @@ void demandSvg(const std::string& option, const std::string& file)
 void demandFolder(const std::string& option, const std::string& folder)
 {
     if (folder == "-")
-        throw Error(option + ": expected a folder, found \"-\"; --json without " + option +
-                    " writes to standard output");
+        throw Error(option + ": expected a folder, found \"-\", which stands for standard output; name a folder");
 }
 
 void demandOwner(const CLI::App& command, const std::string& owner, std::initializer_list<const char*> options)

@@ -51,7 +51,8 @@ void demandGenerated(const HandOptions& o)
     for (const auto& [option, text] :
          {std::pair{"--speed", &o.speed}, std::pair{"--press-depth", &o.depth}, std::pair{"--reach", &o.reach}})
         if (!text->empty())
-            throw Error(std::string(option) + " belongs to the hands " + generatedHands() + ", found --hand " +
+            throw Error(std::string(option) + " belongs to the hands " +
+                        (text == &o.reach ? "circle and scan" : generatedHands()) + ", found --hand " +
                         shownText(o.hand, kMostOfPath) + "; omit one of the two");
 }
 

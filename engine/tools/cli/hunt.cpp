@@ -79,7 +79,8 @@ void hunt(HuntOptions o)
     if (!o.score.empty()) return scoreRecorded(o);
     demandGood(o.session);
     demandScene(o);
-    const Scene        scene            = o.scene.load();
+    const Scene scene = o.scene.load();
+    refuseSourcesAsTarget(o.scene, scene, "--out", o.out);
     const LoadedObject loaded           = o.scene.loadObject(scene);
     o.session.hand.metresPerPlainNumber = metresPerPlainNumber(o.scene, scene);
     study::HuntScorer scorer(scene, loaded.object.cloud());

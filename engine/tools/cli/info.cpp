@@ -113,12 +113,10 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
 
 void printInfo(const InfoOptions& options)
 {
-    if (!options.picture.empty()) {
-        demandPictureName("--picture", options.picture);
-        refuseSourceAsTarget("--picture", options.source.name, options.picture);
-    }
-    const Scene whole              = options.source.load();
-    Scene       scene              = whole;
+    if (!options.picture.empty()) demandPictureName("--picture", options.picture);
+    const Scene whole = options.source.load();
+    refuseSourcesAsTarget(options.source, whole, "--picture", options.picture);
+    Scene scene                    = whole;
     scene.scatter                  = Scatter::off; // the file is shown, and what would become of it
     const LoadedCloud       loaded = options.source.loadCloud(scene);
     const auto              plan   = scatterPlan(whole, loaded);

@@ -156,7 +156,9 @@ void perceive(const PerceiveOptions& o)
     demandSvg("--out", o.out);
     demandSvg("--picture", o.picture);
     refuseSameTarget("--out", o.out, "--picture", o.picture);
-    Felt                   felt(o);
+    Felt felt(o);
+    refuseSourcesAsTarget(o.scene, felt.scene, "--out", o.out);
+    refuseSourcesAsTarget(o.scene, felt.scene, "--picture", o.picture);
     const FeltLine         line = feltLine(felt.scene, felt.object,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),
                                            eachSide(o, felt.scene));

@@ -263,7 +263,10 @@ void render(const RenderOptions& o)
         throw Error("--frames: expected 1 to 9999, found " + std::to_string(*o.frames));
     if (o.frames && !o.force.empty())
         throw Error("--force: with --frames the hand decides how hard it presses; omit one of the two");
-    Stage                    stage(o);
+    Stage stage(o);
+    if (!o.frames) refuseSourcesAsTarget(o.scene, stage.scene, "--out", o.out);
+    for (int n = 1; n <= o.frames.value_or(0); ++n)
+        refuseSourcesAsTarget(o.scene, stage.scene, "--out", frameFile(o.out, n).string());
     std::vector<std::string> said;
     warn(cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report), said);
     const auto written = o.frames ? film(o, stage, said) : std::vector{still(o, stage, said)};

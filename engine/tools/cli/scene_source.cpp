@@ -13,6 +13,7 @@
 #include "engine/core/file.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/shown_text.h"
+#include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/study/hunt_scene.h"
 
 namespace palp {
@@ -175,6 +176,13 @@ std::vector<std::string> unusedVariables()
         said.push_back("the environment's " + std::string(name) + " is not used" + adviceOn(key, known));
     }
     return said;
+}
+
+void refuseSourcesAsTarget(const SceneSource& source, const Scene& scene, const std::string& option,
+                           const std::string& target)
+{
+    for (const std::string& law : filesOfLaws(scene)) refuseSourceAsTarget(option, law, target);
+    for (const std::string& file : {source.name, scene.cloud}) refuseSourceAsTarget(option, file, target);
 }
 
 double metresPerPlainNumber(const SceneSource& source, const Scene& scene)

@@ -34,6 +34,12 @@ struct SceneSource {
     [[nodiscard]] std::string title() const;
 };
 
+/// Refuses to write over what the object is made of: SCENE, its cloud, the files of its laws.
+/// \param target  may be empty: nothing is written
+/// \throws Error that names the option
+void refuseSourcesAsTarget(const SceneSource& source, const Scene& scene, const std::string& option,
+                           const std::string& target);
+
 /// Returns the scene of a scene file, cloud file or sample, with the flags and the environment's values over it.
 [[nodiscard]] Scene sceneFrom(const std::string& name, const std::map<std::string, std::string, std::less<>>& flags);
 

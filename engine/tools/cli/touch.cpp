@@ -58,11 +58,8 @@ void demandTarget(const TouchOptions& options, const Scene& scene)
 {
     if (options.out.empty()) return;
     demandFolder("--out", options.out);
-    std::vector<std::string> sources = filesOfLaws(scene);
-    sources.insert(sources.end(), {options.source.name, scene.cloud});
     for (const std::string& name : fileNames())
-        for (const std::string& source : sources)
-            refuseSourceAsTarget("--out", source, (std::filesystem::path(options.out) / name).string());
+        refuseSourcesAsTarget(options.source, scene, "--out", (std::filesystem::path(options.out) / name).string());
 }
 
 std::string percent(double share)

@@ -94,6 +94,11 @@ public:
     [[nodiscard]] std::optional<std::size_t> probe() const { return probe_; }
     [[nodiscard]] std::size_t                width() const { return width_; }
 
+    [[nodiscard]] bool isBlank(Column column, const std::vector<std::string_view>& cells) const
+    {
+        return cells[*at_[column]].empty();
+    }
+
     /// Returns the number of a row [SI].
     [[nodiscard]] double read(Column column, const std::vector<std::string_view>& cells, const std::string& where) const
     {
@@ -120,6 +125,11 @@ private:
     std::optional<std::size_t>                       probe_;
     std::size_t                                      width_ = 0; // cells that a row must have
 };
+
+/// Rows of one probe may differ so much in where it began to touch: what a robot's encoders tell twice [m].
+constexpr double kSamePlace = 0.1e-3;
+/// The same of its direction, unit vectors apart [1].
+constexpr double kSameDirection = 0.02;
 
 std::string placeText(const glm::dvec3& place)
 {
@@ -258,10 +268,12 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
             header->probe() && *header->probe() < cells.size() ? std::string(cells[*header->probe()]) : "1";
         const auto point = [&](Column x, Column y, Column z) -> std::optional<glm::dvec3> {
             if (!header->has(x) || !header->has(y) || !header->has(z)) return {};
+            if (header->isBlank(x, cells) && header->isBlank(y, cells) && header->isBlank(z, cells)) return {};
             return glm::dvec3(header->read(x, cells, where()), header->read(y, cells, where()),
                               header->read(z, cells, where()));
         };
-        const auto place       = point(kX, kY, kZ);
+        const auto place       = point(kX, kY, kZ),
+                   normal      = point(kNx, kNy, kNz); // a first row's, where later ones are blank
         const auto [at, fresh] = known.try_emplace(called, drafts.size());
         if (fresh) {
             if (drafts.size() == kMostProbes)
@@ -271,13 +283,22 @@ std::vector<Probe> parseProbes(std::string_view text, const std::string& name)
             drafts.emplace_back();
             drafts.back().probe.name   = shownText(called);
             drafts.back().probe.place  = place;
-            drafts.back().probe.normal = point(kNx, kNy, kNz);
+            drafts.back().probe.normal = normal;
         }
         Draft& draft = drafts[at->second];
-        if (place != draft.probe.place)
+        if (place && !draft.probe.place)
+            throw Error(where() + ": expected the place of probe " + draft.probe.name +
+                        " in its first row, found it in a later one only");
+        if (place && glm::distance(*place, *draft.probe.place) > kSamePlace)
             throw Error(where() + ": expected one place in all rows of a probe, that where it begins to touch, found " +
                         placeText(*place) + " after " + placeText(*draft.probe.place) + " of probe " +
-                        draft.probe.name + (header->probe() ? "" : "; name them by a column \"probe\""));
+                        draft.probe.name + ", " + formatQuantity(glm::distance(*place, *draft.probe.place), "m") +
+                        " apart; " + (header->probe() ? "" : "name several probes by a column \"probe\", or ") +
+                        "state the place in the first row alone");
+        if (normal && draft.probe.normal &&
+            glm::distance(glm::normalize(*normal), glm::normalize(*draft.probe.normal)) > kSameDirection)
+            throw Error(where() + ": expected one direction nx, ny, nz in all rows of probe " + draft.probe.name +
+                        ", found another one; state it in the first row alone");
         draft.lines.push_back(number);
         draft.probe.depth.push_back(header->read(kDepth, cells, where()));
         draft.probe.force.push_back(header->read(kForce, cells, where()));

@@ -78,7 +78,8 @@ void Controls::goOn()
 void Controls::reset()
 {
     resetView();
-    if (parts_.session.forceIsStopped() || !parts_.notices.faults().empty()) goOn();
+    if (parts_.session.forceIsStopped()) return goOn();
+    parts_.notices.clearFaults(); // of something else, for which no session or recording ends
 }
 
 void Controls::savePicture(Shot shot)

@@ -350,7 +350,13 @@ good 'a time in milliseconds' run scene.json --clock virtual --seconds 100ms --j
 holds '"ticks": 100'
 bad 'a speed of a file' "--speed belongs to the hands press, circle, scan, found --hand session.csv" run scene.json --hand session.csv --speed 10mm/s
 bad 'a reach of a press' '--reach belongs to the hands circle and scan' run scene.json --hand press --reach 5mm --clock virtual
-bad 'a recording on standard output' '--record: expected a folder, found "-"' run scene.json --hand press --record - --clock virtual
+bad 'a recording on standard output' '--record: expected a folder, found "-", which stands for standard output' run scene.json --hand press --record - --clock virtual
+bad 'a reach of a device' '--reach belongs to the hands circle and scan, found' run scene.json --hand spacemouse --reach 1mm
+ln -sf skin.ply linked.png
+bad 'a picture over the cloud' 'linked.png is read as well' render skin.ply --out linked.png
+bad 'a picture over the cloud of a scene' 'linked.png is read as well' info scene.json --picture linked.png
+ln -sf skin.ply linked.svg
+bad 'a plot over the cloud' 'linked.svg is read as well' perceive skin.ply --out linked.svg
 bad 'a depth of a device' '--press-depth belongs to' run scene.json --hand falcon --press-depth 1mm
 printf 'time [ms], x [mm], y [mm], z [mm]\n0, 0, 0, 10\n100, 0, 0, 9\n' >units.csv
 good 'a hand in milliseconds' run scene.json --hand units.csv --clock virtual --json

@@ -72,8 +72,30 @@ TEST(ProbeTable, RowsOfOneProbeHaveOnePlace)
         return text;
     };
     EXPECT_TRUE(says(rows("time,", "0,"), {"line 7", "one place", "(20.0 mm, 0 m, 0 m) after (0 m, 0 m, 0 m)",
-                                           "name them by a column \"probe\""}));
-    EXPECT_TRUE(says(rows("probe,", "a,"), {"line 7", "of probe a"}));
+                                           "20.0 mm apart", "name several probes by a column \"probe\""}));
+    EXPECT_TRUE(says(rows("probe,", "a,"), {"line 7", "of probe a", "in the first row alone"}));
+}
+
+/// As robots and people write them.
+TEST(ProbeTable, APlaceMayTrembleOrStandInTheFirstRowAlone)
+{
+    const auto rows = [](const std::string& first, const std::string& later) {
+        std::string text = "depth [mm],force,x [mm],y [mm],z [mm],nx,ny,nz\n";
+        for (int n = 0; n < 6; ++n)
+            text += std::to_string(n) + "," + std::to_string(n) + "," + (n ? later : first) + "\n";
+        return text;
+    };
+    const std::string first = "10,0,5,0,0,1";
+    for (const std::string& later : {first, std::string("10.05,0.0000001,5,0.001,0,1"), std::string(",,,,,")}) {
+        const auto probes = parseProbes(rows(first, later), "p");
+        ASSERT_EQ(probes.size(), 1U);
+        EXPECT_EQ(probes.front().place, glm::dvec3(0.01, 0, 0.005)) << "that of the first row";
+        EXPECT_EQ(probes.front().normal, glm::dvec3(0, 0, 1));
+    }
+    EXPECT_TRUE(says(rows(first, "10.2,0,5,0,0,1"), {"line 3", "200 um apart"}));
+    EXPECT_TRUE(says(rows(first, "10,0,5,0,1,0"), {"line 3", "one direction"}));
+    EXPECT_TRUE(says(rows(",,,0,0,1", first), {"line 3", "in its first row"}));
+    EXPECT_TRUE(says(rows(first, "10,,5,0,0,1"), {"line 3", "column y", "finite number"}));
 }
 
 TEST(ProbeTable, WithoutNamesAllRowsAreOneProbeAndWithTimesItMayGoBack)
