@@ -100,7 +100,7 @@ PALPATE_THICKNES=1 "$palpate" fit one.csv >out.txt 2>err.txt && grep -q '^palpat
     complain "fit does not name a variable that nothing reads: $(cat err.txt)"
 holds ': 1 press, 95'
 sed 's/^probe/press/' probes.csv >unnamed.csv
-bad 'places of presses without names' 'name them by a column "probe"' fit unnamed.csv
+bad 'places of presses without names' 'name several probes by a column "probe"' fit unnamed.csv
 sed 's/,\([0-9.]*\),\([0-9.]*,[0-9.]*,0\)$/,-\1,\2/' probes.csv >pulls.csv
 bad 'presses that pull' 'turn the sign' fit pulls.csv
 sed 's/ \[mm\]//' probes.csv >metres.csv
@@ -354,7 +354,8 @@ bad 'a recording on standard output' '--record: expected a folder, found "-", wh
 bad 'a reach of a device' '--reach belongs to the hands circle and scan, found' run scene.json --hand spacemouse --reach 1mm
 ln -sf skin.ply linked.png
 bad 'a picture over the cloud' 'linked.png is read as well' render skin.ply --out linked.png
-bad 'a picture over the cloud of a scene' 'linked.png is read as well' info scene.json --picture linked.png
+echo '{"cloud": "skin.ply"}' >linked.json
+bad 'a picture over the cloud of a scene' 'linked.png is read as well' info linked.json --picture linked.png
 ln -sf skin.ply linked.svg
 bad 'a plot over the cloud' 'linked.svg is read as well' perceive skin.ply --out linked.svg
 bad 'a depth of a device' '--press-depth belongs to' run scene.json --hand falcon --press-depth 1mm
@@ -641,7 +642,7 @@ bad 'a touch over its cloud' '--out: own/deformed.ply is read as well' touch own
     passed=$((passed + 1)) || complain 'a touch wrote over the cloud of its scene'
 cp 'a folder/rigidity.npy' own
 bad 'a touch over its law' '--out: own/rigidity.npy is read as well' touch own/kept.ply --stiffness 'grid:file=own/rigidity.npy,spacing=1' --out own
-bad 'a folder that is a stream' '--json without --out' touch sample:skin --json --out -
+bad 'a folder that is a stream' 'which stands for standard output' touch sample:skin --json --out -
 bad 'a folder that is a file' 'full/out' touch sample:skin --points 5000 --cells 48 --out full/out
 # --- options that cannot apply
 for option in '--stiffness-property quality' '--stiffness-range 1kPa,2kPa' --log-range '--uniform 3kPa' '--stiffness-unit N_m' '--columns x,y,z' --drop-invalid; do
