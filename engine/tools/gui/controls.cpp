@@ -80,6 +80,7 @@ void Controls::reset()
     resetView();
     if (parts_.session.forceIsStopped()) return goOn();
     parts_.notices.clearFaults(); // of something else, for which no session or recording ends
+    parts_.paint.forgetWarning();
 }
 
 void Controls::savePicture(Shot shot)
