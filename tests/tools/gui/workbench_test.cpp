@@ -299,25 +299,6 @@ TEST_F(WorkbenchTest, AfterAFaultOfTheGovernorThereIsAForceAgainByR)
     EXPECT_TRUE(screen_.said_("R starts anew")) << screen_.notes;
 }
 
-/// What is not saved, or cannot be, is no reason for a session to begin anew.
-TEST_F(WorkbenchTest, RTakesAComplaintAwayAndTheRecordingGoesOn)
-{
-    takeHand();
-    record();
-    wait("a force", [this] { return hand_.last > 0.05; });
-    press(kF5Key);
-    wait("a recording with a force", [this] { return std::filesystem::exists("session-0001") && hand_.last > 0.05; });
-    drop("no_such_file.ply");
-    wait("a complaint", [this] { return complainedOf("no_such_file.ply"); });
-    press('R');
-    rest(0.3);
-    step("the force stays", [this](WindowInput&) { EXPECT_GT(hand_.last, 0.05); });
-    run();
-
-    EXPECT_TRUE(std::filesystem::exists("session-0001"));
-    EXPECT_FALSE(screen_.said_("begins anew")) << screen_.notes;
-}
-
 TEST_F(WorkbenchTest, ClosingWhileADevicePressesEndsInZeroForce)
 {
     takeHand();
