@@ -41,19 +41,20 @@ SimulatedHand gripOf(const std::string& text)
     return hand;
 }
 
-/// Refuses the options of generated hands for another hand, on which they would have no effect.
+/// Refuses the options of generated hands for another hand, on which they would have no effect; a press has no reach.
 void demandGenerated(const HandOptions& o)
 {
-    if (valueNamed<HandMotion>(o.hand) == HandMotion::press && !o.reach.empty())
-        throw Error("--reach belongs to the hands circle and scan, found --hand press; omit one of the two");
     const DeviceRecord* record = deviceNamed(o.hand);
-    if (record ? record->holder == DeviceHolder::scriptedHand : valueNamed<HandMotion>(o.hand).has_value()) return;
-    for (const auto& [option, text] :
-         {std::pair{"--speed", &o.speed}, std::pair{"--press-depth", &o.depth}, std::pair{"--reach", &o.reach}})
-        if (!text->empty())
-            throw Error(std::string(option) + " belongs to the hands " +
-                        (text == &o.reach ? "circle and scan" : generatedHands()) + ", found --hand " +
-                        shownText(o.hand, kMostOfPath) + "; omit one of the two");
+    const auto          motion = valueNamed<HandMotion>(o.hand);
+    const bool          moves  = record ? record->holder == DeviceHolder::scriptedHand : motion.has_value();
+    const auto          demand = [&](const char* option, const std::string& text, const std::string& hands, bool has) {
+        if (text.empty() || has) return;
+        throw Error(std::string(option) + " belongs to the hands " + hands + ", found --hand " +
+                             shownText(o.hand, kMostOfPath) + "; omit one of the two");
+    };
+    demand("--speed", o.speed, generatedHands(), moves);
+    demand("--press-depth", o.depth, generatedHands(), moves);
+    demand("--reach", o.reach, "circle and scan", moves && motion != HandMotion::press);
 }
 
 /// \throws Error naming the option whose text is not understood, or that has no effect

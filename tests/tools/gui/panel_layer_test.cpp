@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include "tests/tools/gui/blank_screen.h"
+#include "tests/tools/gui/unseen_font.h"
 
 // Who takes the pointer, the panels or the object, from picture to picture.
 
@@ -22,9 +23,7 @@ class PanelLayerTest : public ::testing::Test {
 protected:
     PanelLayerTest()
     {
-        unsigned char* pixels = nullptr; // of the font, which a renderer would ask for
-        int            width = 0, height = 0;
-        ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        makeUnseenFont();
         input_.size = {1280, 720};
         for (int n = 0; n < 3; ++n) { // panels settle their sizes
             input_.keys = {{'F', false, false}};

@@ -8,6 +8,7 @@
 
 #include "engine/tools/gui/panel_frame.h"
 #include "engine/tools/gui/panels.h"
+#include "tests/tools/gui/unseen_font.h"
 
 // Real presses and drags on panels that nobody draws. Places are those of tests/tools/gui/golden/*.png, 1280 x 720.
 
@@ -20,9 +21,7 @@ class PanelsClick : public ::testing::Test {
 protected:
     PanelsClick()
     {
-        unsigned char* pixels = nullptr; // of the font, which a renderer would ask for
-        int            width = 0, height = 0;
-        ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        makeUnseenFont();
         settle();
     }
 
@@ -257,9 +256,7 @@ TEST_F(PanelsClick, OnADisplayOfTwiceTheScalePanelsAreTwiceAsLargeAndBackAsBefor
     for (std::size_t k = 0; k < 3; ++k) {
         const int scale = k == 1 ? 2 : 1;
         frame_.setScale(scale);
-        unsigned char* pixels = nullptr;
-        int            width = 0, height = 0;
-        ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &width, &height);
+        makeUnseenFont();
         for (int n = 0; n < 3; ++n) {
             frame_.beginWithoutWindow(scale * kSize, {});
             EXPECT_EQ(ImGui::GetFontSize(), 15.0F * float(scale));
