@@ -66,6 +66,14 @@ std::span<const Unit> unitsOf(Dimension dimension)
     return {};
 }
 
+/// Returns the unit as the tables have it: written with the micro sign or with the Greek letter it begins with u there.
+std::string inAscii(std::string_view unit)
+{
+    for (const std::string_view micro : {"\u00b5", "\u03bc"})
+        if (unit.starts_with(micro)) return "u" + std::string(unit.substr(micro.size()));
+    return std::string(unit);
+}
+
 std::string listed(std::span<const Unit> units)
 {
     std::string text;
@@ -108,7 +116,7 @@ double parseQuantity(std::string_view text, Dimension dimension, std::string_vie
     };
     if (unit.empty()) return inSi(siPerPlainNumber);
     for (const Unit& known : unitsOf(dimension))
-        if (known.name == unit) return inSi(known.inSi);
+        if (known.name == inAscii(unit)) return inSi(known.inSi);
     throw Error(std::string(what) + ": unknown unit " + inQuotes(unit) + " in " + inQuotes(text) +
                 "; known units: " + listed(unitsOf(dimension)));
 }
@@ -133,7 +141,7 @@ double siPerUnitOf(const ColumnHead& head, Dimension dimension, const std::strin
 double metresPer(std::string_view lengthUnit)
 {
     for (const Unit& known : kLengths)
-        if (known.name == lengthUnit) return known.inSi;
+        if (known.name == inAscii(lengthUnit)) return known.inSi;
     throw Error("unknown length unit \"" + std::string(lengthUnit) + "\"; known units: " + listed(kLengths));
 }
 
@@ -160,7 +168,7 @@ std::string formatQuantity(double value, std::string_view siUnit)
         std::snprintf(text, sizeof text, "0 %.*s", length, siUnit.data());
         return text;
     }
-    constexpr std::array kPrefixes  = {"p", "n", "u", "m", "", "k", "M", "G", "T"};
+    constexpr std::array kPrefixes  = {"p", "n", "\u00b5", "m", "", "k", "M", "G", "T"};
     constexpr int        kMostSteps = 4; // of a thousand, up or down from the unit
     // Rounded to three digits first: 999.96 is 1.00 k, not 1000.
     std::snprintf(text, sizeof text, "%.2e", value);

@@ -72,6 +72,14 @@ TEST(Quantity, EveryUnitIsThatManySiUnits)
         EXPECT_NEAR(parseQuantity(std::string("3 ") + unit, dimension, "x") / (3 * inSi), 1, 1e-12) << unit;
 }
 
+TEST(Quantity, WhatPeopleReadIsReadAgain)
+{
+    for (const double value : {35e-6, 4.2e-3, 12.0, 3.5e3})
+        EXPECT_DOUBLE_EQ(parseQuantity(formatQuantity(value, "m"), Dimension::length, "x"), value);
+    EXPECT_DOUBLE_EQ(parseQuantity("3 \u03bcm", Dimension::length, "x"), 3e-6) << "the Greek letter looks the same";
+    EXPECT_DOUBLE_EQ(metresPer("\u00b5m"), 1e-6);
+}
+
 TEST(Quantity, WhatItsUnitMakesInfiniteIsRefused)
 {
     EXPECT_GT(parseQuantity("1e308 mm", Dimension::length, "--window"), 9e304);
@@ -150,7 +158,7 @@ TEST(Quantity, PeopleReadThreeDigitsAndAPrefix)
     EXPECT_EQ(formatQuantity(0.0042, "m"), "4.20 mm");
     EXPECT_EQ(formatQuantity(1.74e6, "Pa/m"), "1.74 MPa/m");
     EXPECT_EQ(formatQuantity(0, "N"), "0 N");
-    EXPECT_EQ(formatQuantity(-35e-6, "m"), "-35.0 um");
+    EXPECT_EQ(formatQuantity(-35e-6, "m"), "-35.0 \u00b5m");
     EXPECT_EQ(formatQuantity(999.96, "N"), "1.00 kN");
     EXPECT_EQ(formatQuantity(1e-12, "m"), "1.00 pm");
     EXPECT_EQ(formatQuantity(999e12, "Pa"), "999 TPa");

@@ -56,7 +56,8 @@ void printText(const ServoJitter& jitter)
     for (std::size_t bin = 0; bin < jitter.idle.counts.size(); ++bin) {
         const bool        isLast = bin == TickLateness::kBins.size();
         const std::string bound  = formatQuantity(TickLateness::kBins[isLast ? bin - 1 : bin], "s");
-        std::cout << "  " << std::left << std::setw(33) << (isLast ? "more" : "up to " + bound)
+        const auto        micro  = int(std::ranges::count(bound, '\xc2')); // has two bytes, and one column
+        std::cout << "  " << std::left << std::setw(33 + (isLast ? 0 : micro)) << (isLast ? "more" : "up to " + bound)
                   << share(jitter.idle, bin) << "   " << share(jitter.busy, bin) << "  " << bar(jitter.busy, bin)
                   << "\n";
     }

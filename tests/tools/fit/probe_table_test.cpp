@@ -92,7 +92,7 @@ TEST(ProbeTable, APlaceMayTrembleOrStandInTheFirstRowAlone)
         EXPECT_EQ(probes.front().place, glm::dvec3(0.01, 0, 0.005)) << "that of the first row";
         EXPECT_EQ(probes.front().normal, glm::dvec3(0, 0, 1));
     }
-    EXPECT_TRUE(says(rows(first, "10.2,0,5,0,0,1"), {"line 3", "200 um apart"}));
+    EXPECT_TRUE(says(rows(first, "10.2,0,5,0,0,1"), {"line 3", "200 \u00b5m apart"}));
     EXPECT_TRUE(says(rows(first, "10,0,5,0,1,0"), {"line 3", "one direction"}));
     EXPECT_TRUE(says(rows(",,,0,0,1", first), {"line 3", "in its first row"}));
     EXPECT_TRUE(says(rows(first, "10,,5,0,0,1"), {"line 3", "column y", "finite number"}));
