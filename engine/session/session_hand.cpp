@@ -144,7 +144,13 @@ void demandGood(const HandChoice& choice)
         throw Error("--hand " + choice.hand + ": it needs a window, which this command does not open; try scan, or " +
                     "--hand " + std::string(kArmRecord.name));
     if (!record && !valueNamed<HandMotion>(choice.hand)) refuseUnknown(choice.hand);
+    demandFitting(choice);
+}
+
+void demandFitting(const HandChoice& choice)
+{
     demandOptionsOf(choice.hand, choice.options);
+    const DeviceRecord* record = deviceNamed(choice.hand);
     if (record && record->holder != DeviceHolder::scriptedHand && choice.grip)
         throw Error("--arm: no scripted hand grips the " + choice.hand + "; omit one of the two");
 }

@@ -48,6 +48,10 @@ struct SessionHand {
 /// \throws Error naming `--hand` or the option
 void demandGood(const HandChoice& choice);
 
+/// Checks only whether the options are those of the hand.
+/// \throws Error naming the option
+void demandFitting(const HandChoice& choice);
+
 /// Makes the hand and opens its device.
 /// \throws Error naming the option, the file, or why the device cannot be used
 [[nodiscard]] SessionHand openHand(const HandChoice& choice, const Scene& scene, const SoftObject& object);

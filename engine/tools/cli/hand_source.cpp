@@ -57,8 +57,8 @@ void demandGenerated(const HandOptions& o)
     demand("--reach", o.reach, "circle and scan", moves && motion != HandMotion::press);
 }
 
-/// \throws Error naming the option whose text is not understood, or that has no effect
-HandChoice choiceOf(const HandOptions& o)
+/// \throws Error naming the option whose text is not understood
+HandChoice readChoice(const HandOptions& o)
 {
     HandChoice choice;
     choice.hand    = o.hand;
@@ -69,6 +69,13 @@ HandChoice choiceOf(const HandOptions& o)
     if (!o.depth.empty()) choice.depth = metres(o.depth, "--press-depth", o.metresPerPlainNumber);
     if (!o.grip.empty()) choice.grip = gripOf(o.grip);
     if (!o.seconds.empty()) choice.seconds = secondsOf(o.seconds);
+    return choice;
+}
+
+/// \throws Error as readChoice(), or naming the option that has no effect
+HandChoice choiceOf(const HandOptions& o)
+{
+    HandChoice choice = readChoice(o);
     demandGood(choice);
     demandGenerated(o);
     return choice;
@@ -147,6 +154,12 @@ void demandGood(const HandOptions& options)
 {
     static_cast<void>(choiceOf(options));
     if (!deviceNamed(options.hand) && !valueNamed<HandMotion>(options.hand)) static_cast<void>(readHand(options.hand));
+}
+
+void demandFitting(const HandOptions& options)
+{
+    demandGenerated(options);
+    demandFitting(readChoice(options));
 }
 
 SessionHand handFor(const HandOptions& options, const Scene& scene, const SoftObject& object)

@@ -48,6 +48,10 @@ void addDeviceOptions(CLI::App& command, DeviceOptionValues& values, std::span<c
 /// \throws Error naming the option
 void demandGood(const HandOptions& options);
 
+/// Checks whether the options are those of the hand, such as of the pointer, which a window has by itself.
+/// \throws Error naming the option
+void demandFitting(const HandOptions& options);
+
 /// Waits until the user has homed the device, and says on standard error what to do.
 /// \throws Error as the function of device/homing.h does
 void waitForHoming(HapticDevice& device, const std::atomic<bool>& stop);

@@ -309,6 +309,7 @@ void addViewCommand(CLI::App& app)
                     "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
     command->callback([command, o] {
         o->command = commandOf(*command);
+        if (deviceNamed(o->hand.hand) == &kMouseRecord) demandFitting(o->hand); // others: when they are opened
         view(*o);
     });
 }

@@ -351,6 +351,9 @@ holds '"ticks": 100'
 bad 'a speed of a file' "--speed belongs to the hands press, circle, scan, found --hand session.csv" run scene.json --hand session.csv --speed 10mm/s
 bad 'a reach of a press' '--reach belongs to the hands circle and scan' run scene.json --hand press --reach 5mm --clock virtual
 bad 'a recording on standard output' '--record: expected a folder, found "-", which stands for standard output' run scene.json --hand press --record - --clock virtual
+bad 'a speed of the mouse' '--speed belongs to the hands press, circle, scan, found --hand mouse' view sample:sheet --speed 10mm/s
+bad 'a grip on the mouse' '--arm: no scripted hand grips the mouse' view sample:sheet --arm 150N/m
+bad 'an arm of the mouse' '--forcedimension-init is an option of --hand forcedimension, found --hand mouse' view sample:sheet --forcedimension-init
 bad 'a reach of a device' '--reach belongs to the hands circle and scan, found' run scene.json --hand spacemouse --reach 1mm
 ln -sf skin.ply linked.png
 bad 'a picture over the cloud' 'linked.png is read as well' render skin.ply --out linked.png
