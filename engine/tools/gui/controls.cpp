@@ -113,6 +113,12 @@ void Controls::open(const std::filesystem::path& what)
 
 void Controls::change(const SceneValues& values)
 {
+    try { // a value that no scene takes ends no session; while the window is busy, another thread reads a scene
+        if (!parts_.notices.busy())
+            static_cast<void>(parts_.object.sceneWith(parts_.object.valuesWith(values)));
+    } catch (const Error& error) {
+        return parts_.notices.complain(error.what());
+    }
     parts_.object.request(values);
     parts_.session.resume();
     parts_.session.end();

@@ -41,6 +41,12 @@ void ObjectSource::adopt(OpenedObject opened)
     recorded_ = std::move(opened.recorded);
 }
 
+SceneValues ObjectSource::valuesWith(SceneValues others) const
+{
+    others.insert(values_.begin(), values_.end());
+    return others;
+}
+
 Scene ObjectSource::sceneWith(const SceneValues& values) const
 {
     if (!recorded_) return settings_.open(what_, values);

@@ -39,13 +39,14 @@ public:
     /// Puts the opened object on the stage.
     void adopt(OpenedObject opened);
 
+    /// Returns the values that the user has set, with others over them.
+    [[nodiscard]] SceneValues valuesWith(SceneValues others) const;
     /// Returns the scene on the stage with other values over it.
     /// \throws Error as the scene's reader does
     [[nodiscard]] Scene sceneWith(const SceneValues& values) const;
     void                adopt(std::unique_ptr<Stage> stage) { stage_ = std::move(stage); }
     void                setValues(SceneValues values) { values_ = std::move(values); }
 
-    [[nodiscard]] const SceneValues&                    values() const { return values_; }
     [[nodiscard]] Stage&                                stage() const { return *stage_; } ///< \pre there is one
     [[nodiscard]] bool                                  hasStage() const { return stage_ != nullptr; }
     [[nodiscard]] const std::optional<RecordedSession>& recorded() const { return recorded_; }

@@ -122,7 +122,7 @@ void Workbench::openFirst()
     if (closing_) return;
     adopt(std::move(opened));
     controls_.resetView();
-    if (settings_.welcome.empty()) return;
+    if (settings_.welcome.empty() || state_.blind) return; // it names what a hunt does not have
     const std::string& said = notices_.message();
     notices_.say(settings_.welcome + (said.empty() ? "" : ". " + said));
 }
@@ -162,8 +162,7 @@ void Workbench::openOther(const std::string& what)
 
 void Workbench::takeValues(const SceneValues& wanted)
 {
-    SceneValues values = object_.values();
-    for (const auto& [key, value] : wanted) values[key] = value;
+    SceneValues values = object_.valuesWith(wanted);
     try {
         const Scene scene = object_.sceneWith(values);
         if (haveSameCloud(scene, object_.stage().scene())) {

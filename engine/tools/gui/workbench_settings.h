@@ -58,7 +58,7 @@ struct WorkbenchSettings {
     std::function<void(const std::string& what)> opened;
     /// Returns the objects that the panels offer. Is called after opened. May be empty: none.
     std::function<std::vector<std::string>()> offered;
-    std::string                               welcome{}; ///< a first message to the user; may be empty
+    std::string                               welcome{}; ///< a first message to the user, not in hunts; may be empty
     /// Is called with the name of each object that is shown. May be empty.
     std::function<void(const std::string& name)> titled;
     /// Returns, in sentences, what was assumed of a cloud because nothing states it. May be empty.

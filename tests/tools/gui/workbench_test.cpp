@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <thread>
 
@@ -674,6 +675,46 @@ TEST_F(WorkbenchTest, AValueThatASceneDoesNotTakeIsExplainedAndTheSessionGoesOn)
 
     EXPECT_TRUE(holds(complaints_, {"9 km", "1e-6 to 1 m", "such as 4 mm"}))
         << "found, expected, remedy: " << complaints_;
+}
+
+TEST_F(WorkbenchTest, AValueThatIsRefusedEndsNoRecording)
+{
+    record();
+    wait("the object", [this] { return screen_.points == 2000; });
+    press(kF5Key);
+    wait("a recording", [] { return std::filesystem::exists("session-0001"); });
+    step("too thick", [this](WindowInput&) { bench_->change({{"thickness", "9 km"}}); });
+    wait("a sentence", [this] { return complainedOf("thickness"); });
+    rest(0.3);
+    press(kF5Key);
+    rest(0.3);
+    run();
+
+    EXPECT_TRUE(screen_.said_("recorded session-0001"));
+    EXPECT_FALSE(std::filesystem::exists("session-0002")) << "F5 would begin another, if the first had ended";
+}
+
+TEST_F(WorkbenchTest, OnlyAHuntHasNoWelcome)
+{
+    class NothingHidden final : public CloudOverlay {
+    public:
+        PointCloud                over(const PointCloud& cloud, const Scene&) const override { return cloud; }
+        std::vector<BuriedNodule> below(const PointCloud&, const Scene&) const override { return {}; }
+    };
+    settings_.welcome = "welcome";
+    for (const bool hunts : {false, true}) {
+        screen_.notes  = "";
+        screen_.points = 0;
+        settings_.open = [hunts](const std::string& what, const SceneValues& values) {
+            Scene scene = sceneOf(what, values);
+            if (hunts) scene.overlay = std::make_shared<const NothingHidden>();
+            return scene;
+        };
+        wait("the object", [this] { return screen_.points == 2000; });
+        rest(0.1);
+        run();
+        EXPECT_EQ(screen_.said_("welcome"), !hunts);
+    }
 }
 
 TEST_F(WorkbenchTest, ColoursReachAsFarAsTheTheoryIsTrusted)
