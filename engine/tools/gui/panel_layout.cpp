@@ -17,9 +17,9 @@ float statusHeight(float scale)
     return (kPanelFont + 2 * kStatusPad) * scale;
 }
 
-float footHeight(float height, float scale)
+float footHeight(float width, float height, float scale)
 {
-    return 3 * float(annotationSize(int(height), scale)); // a line of the key and its margins
+    return 3 * float(annotationSize(int(width), int(height), scale)); // a line of the key and its margins
 }
 
 PictureArea freeArea(const ViewState& state, const glm::ivec2& size, double scale)
@@ -27,7 +27,7 @@ PictureArea freeArea(const ViewState& state, const glm::ivec2& size, double scal
     const glm::dvec2 all(size);
     if (!hasColumn(state)) return {{0, 0}, all};
     const double left = columnWidth(float(size.x), float(scale)), top = statusHeight(float(scale));
-    const double foot = state.texts ? footHeight(float(size.y), float(scale)) : 0;
+    const double foot = state.texts ? footHeight(float(size.x), float(size.y), float(scale)) : 0;
     // A window lower than its own lines has no room left; half of it serves as well as any other answer.
     return {{left, top}, {all.x - left, std::max(0.5 * all.y, all.y - top - foot)}};
 }

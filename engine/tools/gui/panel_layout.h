@@ -17,8 +17,8 @@ inline constexpr float kStatusPad = 5;  ///< above and below the text of the sta
 /// Returns the height of the line at the top [px].
 [[nodiscard]] float statusHeight(float scale);
 /// Returns the height of the texts at the foot of the picture, see annotate() [px].
-/// \param height  of the picture [px]
-[[nodiscard]] float footHeight(float height, float scale);
+/// \param width, height  of the picture [px]
+[[nodiscard]] float footHeight(float width, float height, float scale);
 
 /// Returns whether the column and the status line are shown: nobody has hidden them, and no nodules are hidden.
 [[nodiscard]] inline bool hasColumn(const ViewState& state)

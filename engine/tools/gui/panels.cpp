@@ -1,6 +1,7 @@
 #include "engine/tools/gui/panels.h"
 
 #include <algorithm>
+#include <string>
 
 #include <imgui.h>
 
@@ -79,15 +80,25 @@ bool header(const char* title, bool open)
     return ImGui::CollapsingHeader(title);
 }
 
-/// Closes sections that do not fit when the window has become small.
-void closeWhereSmall(bool small)
+/// Closes the sections when the window has become small, and opens those again when it has grown.
+/// \param high  of the window [px at scale 1]
+void closeWhileSmall(bool small, float high)
 {
     ImGuiStorage* const kept = ImGui::GetStateStorage();
     const ImGuiID       was  = ImGui::GetID("was small");
-    if (small && !kept->GetBool(was))
-        for (const char* title : {"View", "Touch", "Chart", "Timing", "Scene", "Paint"})
-            kept->SetInt(ImGui::GetID(title), 0);
+    if (small == kept->GetBool(was)) return;
     kept->SetBool(was, small);
+    const auto toggle = [&](const char* title, float openFrom) {
+        const ImGuiID open = ImGui::GetID(title), before = ImGui::GetID((std::string(title) + " before").c_str());
+        if (small) {
+            kept->SetInt(before, kept->GetInt(open, -1)); // -1: not drawn yet
+            kept->SetInt(open, 0);
+        } else if (const int then = kept->GetInt(before); then > 0 || (then < 0 && high >= openFrom)) {
+            kept->SetInt(open, 1);
+        }
+    };
+    toggle("Paint", 0);
+    for (const Section& section : kSections) toggle(section.title, section.openFrom);
 }
 
 /// \param top, foot  heights that belong to others [px]
@@ -103,10 +114,10 @@ void drawColumn(PanelDesk& desk, float top, float foot)
     if (ImGui::Begin("panels", nullptr,
                      ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize |
                          ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-        closeWhereSmall(small);
+        closeWhileSmall(small, screen.y / s);
         if (desk.state.tool == Tool::paint && header("Paint", true)) drawPaintSection(desk);
         for (const Section& section : kSections)
-            if (header(section.title, !small && screen.y >= section.openFrom * s)) section.draw(desk);
+            if (header(section.title, screen.y >= section.openFrom * s)) section.draw(desk);
     }
     ImGui::End();
 }
@@ -122,8 +133,9 @@ PanelWishes drawPanels(ViewState& state, const PanelContent& content, double sca
     // the picture, or where that has no texts by the status line.
     const bool column = hasColumn(state);
     if (column || (!state.texts && needsAttention(content))) {
-        const float top  = drawStatusLine(desk);
-        const float foot = state.texts ? footHeight(ImGui::GetIO().DisplaySize.y, desk.scale) : 0;
+        const float  top  = drawStatusLine(desk);
+        const ImVec2 all  = ImGui::GetIO().DisplaySize;
+        const float  foot = state.texts ? footHeight(all.x, all.y, desk.scale) : 0;
         if (column) drawColumn(desk, top, foot);
     }
     if (state.keys && !state.blind) drawKeySheet(desk);

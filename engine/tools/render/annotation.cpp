@@ -24,7 +24,7 @@ constexpr int kLeastWidth = 200, kLeastHeight = 150; ///< a smaller picture has 
 class Annotator {
 public:
     Annotator(Image& image, Ground ground, double scale)
-        : image_(image), ink_(inkOn(ground)), ground_(ground), size_(annotationSize(image.height, scale))
+        : image_(image), ink_(inkOn(ground)), ground_(ground), size_(annotationSize(image.width, image.height, scale))
     {
     }
 
@@ -100,27 +100,33 @@ double drawTitle(Annotator& to, const ViewScene& scene)
     const double s = to.size();
     if (scene.title.empty() && scene.note.empty()) return 0;
     constexpr double kTitle = 1.25, kLine = 1.4; // of the font's size [1]
-    const bool       fits = widthOfText(scene.note, s) <= to.width() - 2 * s;
-    const auto       note = fits ? std::vector{scene.note} : linesOf(scene.note, to.width() - 2 * s, s);
-    double           wide = widthOfText(scene.title, kTitle * s);
+    const double     room  = to.width() - 2 * s;
+    const bool       fits  = widthOfText(scene.note, s) <= room;
+    const auto       note  = fits ? std::vector{scene.note} : linesOf(scene.note, room, s);
+    double           wide  = widthOfText(scene.title, kTitle * s);
+    const double     title = wide > room ? kTitle * room / wide : kTitle; // a long name of a file becomes smaller
+    wide                   = std::min(wide, room);
     for (const std::string& line : note) wide = std::max(wide, widthOfText(line, s));
     const double high = scene.note.empty() ? 2.5 * s : (4.0 + kLine * double(note.size() - 1)) * s;
     to.fade({0, 0}, {wide + 2 * s, high});
-    to.text({s, 1.8 * s}, scene.title, kTitle);
+    to.text({s, 1.8 * s}, scene.title, title);
     for (std::size_t n = 0; n < note.size(); ++n) to.text({s, (3.3 + kLine * double(n)) * s}, note[n]);
     return high;
 }
 
-/// \param top  height that others have taken up [px]
-void drawColours(Annotator& to, const ViewColours& colours, double top)
+/// \param top, foot  heights that others have taken up [px]
+void drawColours(Annotator& to, const ViewColours& colours, double top, double foot)
 {
-    const double s = to.size(), high = 0.42 * to.height(), bar = 1.1 * s, tick = 0.35 * s;
-    const Axis   axis(colours.range, colours.scale, colours.unit, 6);
-    const auto   title = axis.title(colours.quantity);
-    double       label = 0;
+    const double s = to.size(), bar = 1.1 * s, tick = 0.35 * s;
+    const double above = std::max(5.5 * s, top + 2.5 * s),
+                 high  = std::min(0.42 * to.height(), to.height() - foot - above - s);
+    if (high < 4 * s) return;
+    const Axis axis(colours.range, colours.scale, colours.unit, std::clamp(int(high / (1.6 * s)), 2, 6));
+    const auto title = axis.title(colours.quantity);
+    double     label = 0;
     for (const Tick& t : axis.ticks()) label = std::max(label, widthOfText(t.label, s));
     const double     wide = std::max(bar + tick + 0.4 * s + label, widthOfText(title, s));
-    const glm::dvec2 corner(to.width() - wide - s, std::max(5.5 * s, top + 2.5 * s));
+    const glm::dvec2 corner(to.width() - wide - s, above);
     to.fade(corner - glm::dvec2(0.7 * s, 2.2 * s), {wide + 1.4 * s, high + 3.2 * s});
     to.text(corner - glm::dvec2(0, 0.8 * s), title);
     if (colours.goesOn) { // a tip, as of an arrow: deeper ones have its colour too
@@ -206,8 +212,8 @@ glm::dvec2 drawKey(Annotator& to, const ViewScene& scene)
         widest = std::max(widest, wide);
         rows.back().push_back(std::move(entry));
     }
-    if (rows.empty()) return {0, 0};
     const glm::dvec2 size(widest + 0.6 * s, 0.7 * s + line * double(rows.size()));
+    if (rows.empty() || size.y > to.height() / 3) return {0, 0}; // colours and lengths need the rest
     to.fade({0, to.height() - size.y}, size);
     for (std::size_t row = 0; row < rows.size(); ++row) {
         glm::dvec2 at(s, to.height() - 0.9 * s - line * double(rows.size() - 1 - row));
@@ -239,7 +245,8 @@ double roundLength(double most)
 }
 
 /// \param taken  from the lower left corner, by others [px]
-void drawLength(Annotator& to, const Camera& camera, const glm::dvec2& taken)
+/// \return the height that all at the foot take up then [px]
+double drawLength(Annotator& to, const Camera& camera, const glm::dvec2& taken)
 {
     constexpr double  kShare         = 0.16; // of the width, at most [1]
     const double      s              = to.size();
@@ -249,30 +256,32 @@ void drawLength(Annotator& to, const Camera& camera, const glm::dvec2& taken)
     const std::string text           = plainText(length);
     const double      room           = std::max(wide, widthOfText(text, s));
     const double      right          = to.width() - s;
-    const double      foot           = to.height() - (right - room - 0.7 * s < taken.x ? taken.y : 0); // [px]
-    const glm::dvec2  end(right, foot - s);
-    to.fade({end.x - room - 0.7 * s, foot - 3.4 * s}, {room + 1.7 * s, 3.4 * s});
+    const double      below          = right - room - 0.7 * s < taken.x ? taken.y : 0; // [px]
+    const glm::dvec2  end(right, to.height() - below - s);
+    to.fade({end.x - room - 0.7 * s, to.height() - below - 3.4 * s}, {room + 1.7 * s, 3.4 * s});
     to.fill({end.x - wide, end.y - 0.25 * s}, {wide, 0.25 * s}, to.ink());
     to.fill({end.x - wide, end.y - 0.6 * s}, {s / 8, 0.6 * s}, to.ink());
     to.fill({end.x - s / 8, end.y - 0.6 * s}, {s / 8, 0.6 * s}, to.ink());
     to.text({end.x - wide / 2, end.y - 0.9 * s}, text, 1, Anchor::middle);
+    return std::max(taken.y, below + 3.4 * s);
 }
 
 } // namespace
 
-double annotationSize(int height, double scale)
+double annotationSize(int width, int height, double scale)
 {
-    return scale * std::clamp(height / scale / 46, 10.0, 40.0);
+    return scale * std::clamp(std::min(width, height) / scale / 46, 10.0, 40.0);
 }
 
 void annotate(Image& image, const ViewScene& scene, const Camera& camera, double scale)
 {
     if (image.width < kLeastWidth * scale || image.height < kLeastHeight * scale) return;
-    Annotator    to(image, scene.ground, scale);
-    const double top = drawTitle(to, scene);
-    if (!scene.values.empty()) drawColours(to, scene.colours, top > 4.1 * to.size() ? top : 0); // beside a short title
+    Annotator        to(image, scene.ground, scale);
+    const double     top   = drawTitle(to, scene);
     const glm::dvec2 taken = drawKey(to, scene);
-    if (!scene.positions.empty()) drawLength(to, camera, taken); // an empty scene has no length
+    const double     foot  = scene.positions.empty() ? taken.y : drawLength(to, camera, taken); // nothing has no length
+    if (!scene.values.empty())                                                                  // beside a short title
+        drawColours(to, scene.colours, top > 4.1 * to.size() ? top : 0, foot);
 }
 
 // Everything is blended by a share, so that the results on black and on white give both share and colour.

@@ -9,12 +9,12 @@
 namespace palp {
 
 /// Writes the meaning of a scene's colours and shapes onto its picture: title, colour bar with unit, a key of the
-/// shapes and a bar of a round length. Sizes follow the picture's height; a picture too small for them gets none.
+/// shapes and a bar of a round length. Sizes follow the picture's smaller side; what it is too small for is omitted.
 /// \param scale  of a display with many pixels per inch [1]
 void annotate(Image& image, const ViewScene& scene, const Camera& camera, double scale = 1);
 
-/// Returns the size of the annotations' font in a picture of that height [px].
-[[nodiscard]] double annotationSize(int height, double scale = 1);
+/// Returns the size of the annotations' font in a picture of that width and height [px].
+[[nodiscard]] double annotationSize(int width, int height, double scale = 1);
 
 /// Annotations by themselves, to be laid over many pictures.
 struct Overlay {

@@ -35,8 +35,9 @@ TEST(Annotation, TheColourBarHasTheColoursOfTheSurface)
 TEST(Annotation, TwiceTheScaleIsTwiceTheSizeInTwiceThePicture)
 {
     for (const int height : {150, 480, 720, 4000})
-        EXPECT_DOUBLE_EQ(annotationSize(2 * height, 2), 2 * annotationSize(height)) << height;
-    EXPECT_EQ(annotationSize(480, 2), 20) << "the least that can be read, at scale 2";
+        EXPECT_DOUBLE_EQ(annotationSize(3 * height, 2 * height, 2), 2 * annotationSize(2 * height, height)) << height;
+    EXPECT_EQ(annotationSize(640, 480, 2), 20) << "the least that can be read, at scale 2";
+    EXPECT_EQ(annotationSize(600, 2000), annotationSize(2000, 600));
     ViewScene scene;
     scene.title = "a title";
     Image once(640, 480, kGround), twice(640, 480, kGround);
@@ -114,7 +115,8 @@ TEST(Annotation, ALongNoteGoesOnInFurtherLinesAboveTheColours)
     scene.note        = "short";
     const auto lowest = [&](bool colours) { // row of ink, or of the middle of the map
         scene.values  = colours ? std::span(&value, 1) : std::span<const double>();
-        scene.colours = {ColourMap::cividis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+        scene.colours = {ColourMap::cividis, Scale::linear, {0, 1e-3},
+                         "deflection",       "m",           true}; // the tip has the colour of 1
         Image image(320, 480, kGround);
         annotate(image, scene, {});
         const Rgb8 sought = colours ? surfaceColour(1, ColourMap::cividis) : inkOn(scene.ground);
@@ -125,6 +127,42 @@ TEST(Annotation, ALongNoteGoesOnInFurtherLinesAboveTheColours)
     scene.note = "no force: The hand moved faster than 1.2 m/s. Hold it still, then start anew. R starts anew.";
     EXPECT_GE(lowest(false) - once, 15) << "a second line";
     EXPECT_GT(lowest(true), bar) << "the colours make room";
+}
+
+TEST(Annotation, InNarrowAndLowPicturesNothingIsCutOrCovered)
+{
+    const double     value = 1e-4;
+    const glm::dvec3 point(0);
+    ViewScene        scene;
+    scene.title     = "stiffness_of_a_scanned_hand";
+    scene.note      = "1.20 N, 0.73 mm deep, displacement \u00d7 8";
+    scene.positions = {&point, 1};
+    scene.proxy = scene.hip = glm::dvec3(0);
+    scene.force = scene.normal = ViewSegment{{}, {0, 0, 1}};
+    scene.outline              = {ViewSegment{}};
+    for (const glm::ivec2 size :
+         {glm::ivec2(200, 150), {240, 180}, {300, 225}, {320, 240}, {200, 900}, {300, 900}, {900, 200}}) {
+        const auto drawn = [&](bool hasColours) {
+            scene.values  = hasColours ? std::span(&value, 1) : std::span<const double>();
+            scene.colours = {ColourMap::cividis, Scale::linear, {0, 1e-3}, "deflection", "m"};
+            Image image(size.x, size.y, kGround);
+            annotate(image, scene, {});
+            return image;
+        };
+        const Image       with = drawn(true), without = drawn(false);
+        const std::string where = std::to_string(size.x) + " x " + std::to_string(size.y);
+        int               edge = 0, shades = 0;
+        for (int y = 0; y < size.y; ++y) edge += with.at(size.x - 1, y) == inkOn(scene.ground);
+        EXPECT_EQ(edge, 0) << "a text goes on beyond the picture, " << where;
+        for (int n = 0; n < 100; ++n) shades += count(with, surfaceColour((n + 0.5) / 100, ColourMap::cividis)) > 0;
+        const bool hasRoom = size.x > 250; // below two lines of a note
+        EXPECT_TRUE(!hasRoom || shades > 30) << "the colours have a bar of 40 rows at least, " << where;
+        // What others have drawn is there still, whole.
+        int covered = 0;
+        for (std::size_t n = 0; n < with.pixels.size(); ++n)
+            covered += without.pixels[n] == inkOn(scene.ground) && with.pixels[n] != without.pixels[n];
+        EXPECT_EQ(covered, 0) << where;
+    }
 }
 
 TEST(Annotation, OnlyWhatHasPointsHasALength)
