@@ -6,6 +6,8 @@
 namespace palp {
 namespace {
 
+constexpr float kTwoColumns = 650; ///< least width of a window that shows two, at scale 1 [px]; a higher sheet scrolls
+
 void drawLines(const PanelDesk& desk, const char* title, KeyGroup group)
 {
     toned(desk, Tone::accent, title);
@@ -33,7 +35,7 @@ void drawKeySheet(PanelDesk& desk)
         drawLines(desk, "look", KeyGroup::view);
         drawLines(desk, "show", KeyGroup::show);
         ImGui::EndGroup();
-        ImGui::SameLine(column);
+        if (screen.x >= kTwoColumns * desk.scale) ImGui::SameLine(column);
         ImGui::BeginGroup();
         drawLines(desk, "touch and paint", KeyGroup::touch);
         drawLines(desk, "program", KeyGroup::program);

@@ -1,5 +1,6 @@
 #include <imgui.h>
 
+#include "engine/core/quantity.h"
 #include "engine/tools/gui/panel_parts.h"
 
 namespace palp {
@@ -28,10 +29,13 @@ void drawPaintSection(PanelDesk& desk)
     slider(desk, "radius  [ ]", "Radius of the brush; [ and ] change it", brush.radius, 1e-3,
            1e3 * BrushChoice::kSmallest, 1e3 * BrushChoice::kLargest, "%.1f mm", true);
     ImGui::BeginDisabled(brush.smooths);
+    // Without a number in its format, a slider does not round: a stiffness has three digits in whichever unit.
     if (desk.content.cloud.kind() == StiffnessKind::modulus)
-        slider(desk, "stiffness", "Young's modulus that is painted", brush.value, 1e3, 1, 1e5, "%.0f kPa", true);
+        slider(desk, "stiffness", "Young's modulus that is painted", brush.value, 1, 1e3, 1e8,
+               formatQuantity(brush.value, "Pa").c_str(), true);
     else
-        slider(desk, "rigidity", "Flexural rigidity that is painted", brush.value, 1e-3, 1e-3, 1e4, "%.3f mN m", true);
+        slider(desk, "rigidity", "Flexural rigidity that is painted", brush.value, 1, 1e-6, 10,
+               formatQuantity(brush.value, "N m").c_str(), true);
     ImGui::EndDisabled();
     slider(desk, "strength", "Share of the way to the painted value that one stroke goes", brush.strength, 1e-2, 1, 100,
            "%.0f %%", false);

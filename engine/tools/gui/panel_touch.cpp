@@ -72,7 +72,7 @@ void drawNumbers(const PanelDesk& desk)
     reading(desk, Half::left, "force", desk.content.touching ? formatted("%.2f N", glm::length(now.force)) : "\u2013");
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
     reading(desk, Half::left, "felt",
-            !known ? "\u2013" : formatted("%.0f N/m%s", std::min(felt, cap), felt > cap ? " cap" : ""));
+            !known ? "\u2013" : formatQuantity(std::min(felt, cap), "N/m") + (felt > cap ? " cap" : ""));
     if (known && felt > cap) tip("Limited by the scene's stiffness_cap");
     reading(desk, Half::right, "rigidity", orDash(formatQuantity(now.rigidity, "N m")));
     reading(desk, Half::left, "dent", orDash(formatted("%.3f mm", now.maxDeflection * 1e3)));

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include "engine/tools/gui/panel_frame.h"
 #include "engine/tools/gui/panels.h"
@@ -37,6 +38,13 @@ protected:
              {&PanelWishes::frame, &PanelWishes::reset, &PanelWishes::screenshot, &PanelWishes::record,
               &PanelWishes::tool, &PanelWishes::undo, &PanelWishes::redo, &PanelWishes::save, &PanelWishes::resetFault})
             wishes_.*one |= now.*one;
+    }
+    /// One frame of a window of another size.
+    void frameOf(const glm::ivec2& size)
+    {
+        frame_.beginWithoutWindow(size, {});
+        static_cast<void>(drawPanels(state_, content_, 1));
+        frame_.end();
     }
     void settle()
     {
@@ -316,13 +324,48 @@ TEST_F(PanelsClick, TheSheetOfKeysCloses)
     EXPECT_FALSE(state_.keys);
 }
 
+TEST_F(PanelsClick, TheSheetOfKeysFitsIntoANarrowWindowAndScrollsInALowOne)
+{
+    state_.keys = true;
+    for (const glm::ivec2& size : {kSize, glm::ivec2(640, 720), glm::ivec2(400, 320)}) {
+        for (int n = 0; n < 3; ++n) frameOf(size);
+        const ImGuiWindow* const sheet = ImGui::FindWindowByName("Keys");
+        ASSERT_TRUE(sheet);
+        EXPECT_LE(sheet->ContentSize.x, sheet->InnerRect.GetWidth()) << size.x << ": nothing is cut";
+        EXPECT_TRUE(sheet->ContentSize.y <= sheet->InnerRect.GetHeight() || sheet->ScrollbarY) << size.y;
+    }
+}
+
+TEST_F(PanelsClick, SectionsThatASmallWindowClosedComeBackWhenItGrows)
+{
+    const auto height = [this](const glm::ivec2& size) {
+        for (int n = 0; n < 3; ++n) frameOf(size);
+        return ImGui::FindWindowByName("panels")->Size.y;
+    };
+    constexpr glm::ivec2 kSmall(480, 360);
+    const float          first = height(kSize);
+    EXPECT_LT(height(kSmall), first / 3);
+    EXPECT_EQ(height(kSize), first);
+    click({60, 39}); // the view
+    const float less = height(kSize);
+    EXPECT_LT(less, first);
+    static_cast<void>(height(kSmall));
+    EXPECT_EQ(height(kSize), less) << "what the user has closed stays closed";
+}
+
+TEST_F(PanelsClick, AWindowThatIsSmallAtFirstOpensItsSectionsWhenItGrows)
+{
+    const float first = ImGui::FindWindowByName("panels")->Size.y;
+    ImGui::FindWindowByName("panels")->StateStorage.Clear(); // as if nothing had been drawn yet
+    for (int n = 0; n < 3; ++n) frameOf({480, 360});
+    settle();
+
+    EXPECT_EQ(ImGui::FindWindowByName("panels")->Size.y, first);
+}
+
 TEST_F(PanelsClick, ASmallWindowKeepsItsMiddleFree)
 {
-    for (int n = 0; n < 3; ++n) {
-        frame_.beginWithoutWindow({480, 360}, {});
-        static_cast<void>(drawPanels(state_, content_, 1));
-        frame_.end();
-    }
+    for (int n = 0; n < 3; ++n) frameOf({480, 360});
     frame_.beginWithoutWindow({480, 360}, {{240, 200}, false});
     EXPECT_FALSE(ImGui::GetIO().WantCaptureMouse) << "all sections are closed";
     static_cast<void>(drawPanels(state_, content_, 1));
