@@ -16,12 +16,13 @@ layout(location = 1) out vec4 colours;
 
 void main()
 {
-    const float kSameSurface = 0.7; // of a radius: discs farther behind the nearest are another surface [1]
+    const float kSameSurface = 0.7; // of a radius: discs farther from the nearest core are another surface [1]
     float r2 = dot(within, within);
     if (r2 > 1.0) discard;
-    float behind = depth - texelFetch(nearestDepth, ivec2(gl_FragCoord.xy), 0).r;
-    if (behind > kSameSurface * radius) discard;
+    float nearest = texelFetch(nearestDepth, ivec2(gl_FragCoord.xy), 0).r;
+    float behind  = depth - nearest;
+    if (abs(behind) > kSameSurface * radius) discard;
     float weight = (1.0 - r2) * (1.0 - r2) * (1.0 - r2);
     normals      = weight * vec4(normal, 1);
-    colours      = weight * vec4(colour, behind);
+    colours      = weight * vec4(colour, behind * pixelsPerMetre(nearest)); // of metres, half precision loses most
 }

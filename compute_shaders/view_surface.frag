@@ -18,6 +18,8 @@ void main()
     surface       = vec4(0);
     albedo        = vec4(0);
     if (normals.w <= 0.0 || dot(normals.xyz, normals.xyz) == 0.0) return;
-    surface = vec4(normalize(normals.xyz), texelFetch(nearestDepth, at, 0).r + colours.w / normals.w);
+    float nearest = texelFetch(nearestDepth, at, 0).r;
+    float behind  = colours.w / (normals.w * pixelsPerMetre(nearest));
+    surface = vec4(normalize(normals.xyz), nearest + behind);
     albedo  = vec4(colours.rgb / normals.w, 1);
 }

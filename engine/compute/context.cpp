@@ -91,8 +91,11 @@ Handles openToDraw(const ContextSettings& settings)
     auto                         instance = std::make_unique<Instance>(settings.validation, settings.windowExtensions);
     const std::vector<Candidate> found    = candidates(*instance);
     std::vector<Processor>       list     = descriptionsOf(found);
-    for (std::size_t n = 0; n < list.size(); ++n)
+    for (std::size_t n = 0; n < list.size(); ++n) {
         if (!found[n].drawFamily) list[n].refusals.emplace_back("it has no queue that draws");
+        if (!found[n].largePoints)
+            list[n].refusals.emplace_back("it draws no points larger than a pixel (largePoints)");
+    }
     const auto open = [&](std::size_t n) {
         return std::make_unique<VulkanContext>(instance, found[n], settings.patience, settings.purpose);
     };

@@ -83,6 +83,7 @@ void describeModern(Candidate& candidate)
     auto features = typed<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &layout);
     vkGetPhysicalDeviceFeatures2(candidate.physical, &features);
     candidate.description.float64 = features.features.shaderFloat64;
+    candidate.largePoints         = features.features.largePoints;
     if (!layout.scalarBlockLayout)
         candidate.description.refusals.push_back("it does not lay structs out as C++ does (scalarBlockLayout)");
 }

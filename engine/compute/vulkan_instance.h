@@ -60,7 +60,8 @@ struct Candidate {
     VkDriverId                   driver        = VkDriverId(0);
     std::uint32_t                family        = 0; ///< the queue family to compute with
     std::uint32_t                timestampBits = 0;
-    std::optional<std::uint32_t> drawFamily; ///< the queue family to draw with; empty: none draws
+    std::optional<std::uint32_t> drawFamily;          ///< the queue family to draw with; empty: none draws
+    bool                         largePoints = false; ///< it draws points larger than a pixel
     VkPhysicalDeviceLimits       limits{};
     VkDeviceSize                 maxBufferBytes = 0; ///< [byte]
 };

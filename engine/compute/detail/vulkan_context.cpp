@@ -132,6 +132,7 @@ void VulkanContext::open(const Instance& entrance, Purpose purpose)
     layout.scalarBlockLayout = VK_TRUE;
     auto features            = typed<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &layout);
     features.features.shaderFloat64 = description.float64;
+    features.features.largePoints   = purpose != Purpose::compute; // openToDraw() refuses what has none
     auto info                       = typed<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features);
     info.queueCreateInfoCount       = 1;
     info.pQueueCreateInfos          = &queueInfo;

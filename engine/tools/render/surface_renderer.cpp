@@ -120,6 +120,20 @@ shared::ViewFrame frameOf(const ViewScene& scene, const Camera& camera, const Pi
     return frame;
 }
 
+/// Returns a bound of the sides of the squares in which a fast picture draws discs, see view_point.vert [px].
+double largestSquare(const ViewScene& scene, const Camera& camera, const shared::ViewFrame& frame)
+{
+    constexpr double kMost   = 4; // of a disc's radius, seen aslant from near by [1]
+    const bool       flat    = camera.projection == Projection::orthographic;
+    const double     nearest = double(frame.clipFromView[3][2]) / double(frame.clipFromView[2][2]); // that is drawn [m]
+    double           largest = 0;                                                                   // at depth 1 m [m]
+    for (std::size_t n = 0; n < scene.positions.size(); ++n) {
+        const double depth = flat ? 1 : glm::dot(camera.toEye, camera.eye() - scene.positions[n]);
+        if (flat || depth >= nearest) largest = std::max(largest, scene.cores[n] / depth);
+    }
+    return kMost * largest * 0.5 * double(frame.width) / double(frame.widthAtOne);
+}
+
 /// Means over squares of `finer` pixels.
 Image averaged(std::span<const std::uint8_t> pixels, const PictureSize& size, VkFormat format)
 {
@@ -157,19 +171,22 @@ void check(const ViewScene& scene, const PictureSize& size, const Overlay* overl
 /// A scene as the passes take it, and the one before. The memory is kept from picture to picture.
 class Drawable {
 public:
-    void make(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay)
+    /// \param largestPoint  that the processor draws [px]; where discs are larger, also a fast picture is a fine one
+    void make(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay,
+              double largestPoint)
     {
         check(scene, size, overlay);
         std::swap(now_, before_);
-        now_.input.detail = size.detail;
-        now_.input.dots   = scene.dots.size();
-        fillSplats(now_.splats, scene, camera, size.detail);
         const std::vector<ShapeCorner> shapes = shapesOf(scene);
         now_.shapes                           = cornersOf(shapes, camera.target);
         now_.input.shining                    = std::size_t(std::ranges::count_if(shapes, &ShapeCorner::shinesThrough));
         now_.faces.clear();
         for (const Triangle& face : scene.faces) now_.faces.insert(now_.faces.end(), face.begin(), face.end());
         now_.input.frame  = frameOf(scene, camera, size, reachOf(scene, now_.shapes, camera.target));
+        const bool cut    = scene.faces.empty() && largestSquare(scene, camera, now_.input.frame) > largestPoint;
+        now_.input.detail = cut ? Detail::fine : size.detail;
+        now_.input.dots   = scene.dots.size();
+        fillSplats(now_.splats, scene, camera, now_.input.detail);
         now_.input.splats = now_.splats;
         now_.input.shapes = now_.shapes;
         now_.input.faces  = now_.faces;
@@ -219,6 +236,12 @@ struct SurfaceRenderer::Impl {
     std::optional<VulkanWindow>  window;
     std::optional<VulkanSurface> surface;
     Drawable                     drawable; ///< keeps its memory from picture to picture
+
+    void make(const ViewScene& scene, const Camera& camera, const PictureSize& size, const Overlay* overlay)
+    {
+        const auto& processor = static_cast<const compute::VulkanContext&>(context.handles());
+        drawable.make(scene, camera, size, overlay, double(processor.native.pointSizeRange[1]));
+    }
 };
 
 SurfaceRenderer::SurfaceRenderer(compute::ContextSettings settings)
@@ -247,7 +270,7 @@ Image SurfaceRenderer::draw(const ViewScene& scene, const Camera& camera, const 
                             const Overlay* overlay)
 {
     if (impl_->window) present();
-    impl_->drawable.make(scene, camera, size, overlay);
+    impl_->make(scene, camera, size, overlay);
     return averaged(impl_->surface->draw(impl_->drawable.input()), size, impl_->surface->format());
 }
 
@@ -256,7 +279,7 @@ bool SurfaceRenderer::show(const ViewScene& scene, const Camera& camera, const P
 {
     PALP_EXPECT(impl_->window, "a renderer shows pictures in the window that it was made with");
     PALP_EXPECT(size.finer == 1, "a window's pixels are not averaged");
-    impl_->drawable.make(scene, camera, size, overlay); // while the one before is being drawn
+    impl_->make(scene, camera, size, overlay); // while the one before is being drawn
     present();
     if (!impl_->window->next({std::uint32_t(size.width), std::uint32_t(size.height)})) {
         impl_->drawable.forget();

@@ -111,6 +111,44 @@ TEST_P(SurfaceRendererTest, ASheetHasNoHolesAndEndsWhereItsPointsEnd)
     EXPECT_EQ(outside, 0) << "beyond the border by more than a few spacings";
 }
 
+/// Points of a picture have a largest size, here of 255 pixels, as on some GPUs.
+TEST_P(SurfaceRendererTest, DiscsLargerThanAPointCanBeLeaveNoHoles)
+{
+    const Sheet sheet(12);
+    Camera      near = above();
+    near.distance *= 0.02;
+    const PictureSize size{640, 480, 1, GetParam()};
+    const Image       image = renderer->draw(sheet.scene(), near, size), empty = renderer->draw({}, near, size);
+
+    int holes = 0;
+    for (std::size_t n = 0; n < image.pixels.size(); ++n) holes += image.pixels[n] == empty.pixels[n];
+    EXPECT_EQ(holes, 0);
+}
+
+TEST_P(SurfaceRendererTest, AnObjectAThousandTimesAsSmallLooksTheSame)
+{
+    Sheet             sheet(40, 2e-3);
+    Camera            camera = orbited(above(), {0.4, 1.2});
+    const PictureSize size{160, 120, 1, GetParam()};
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        camera.projection  = projection;
+        const Image large  = renderer->draw(sheet.scene(), camera, size);
+        Sheet       shrunk = sheet;
+        for (glm::dvec3& place : shrunk.positions) place *= 1e-3;
+        for (double& radius : shrunk.radii) radius *= 1e-3;
+        for (double& core : shrunk.cores) core *= 1e-3;
+        ViewScene scene = shrunk.scene();
+        scene.cueRadius *= 1e-3;
+        Camera near = camera;
+        near.distance *= 1e-3;
+        const Image tiny = renderer->draw(scene, near, size);
+        int         most = 0; // of 765
+        for (std::size_t n = 0; n < large.pixels.size(); ++n)
+            most = std::max(most, std::abs(brightness(large.pixels[n]) - brightness(tiny.pixels[n])));
+        EXPECT_LE(most, 6) << "two of 255 a colour: rounding of single precision";
+    }
+}
+
 TEST_P(SurfaceRendererTest, TheSamePictureTwiceIsTheSameToTheBit)
 {
     const Sheet sheet(60, 2e-3);
