@@ -228,7 +228,7 @@ void Sitting::agree()
             demandSame("--hand", before.hand, now.hand, withoutPort);
         else if (*before.path != *now.path)
             throw Error(path.string() + ": expected the path of a hand that this participant began with, found that " +
-                        shownText(*now.hand, kMostOfPath) +
+                        shownPath(*now.hand) +
                         " has another one, or has changed since; trials could not be compared; choose another --out");
         demandSame("--clock", before.clock, now.clock, std::identity());
         return;
