@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -17,6 +16,7 @@
 #include <unistd.h>
 
 #include "device/detail/guardian.h"
+#include "device/detail/machine_time.h"
 
 namespace palp {
 namespace {
@@ -69,10 +69,7 @@ public:
         }
     }
 
-    [[nodiscard]] double now() const noexcept override
-    {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
+    [[nodiscard]] double now() const noexcept override { return machineTime(); }
 
     void guard(const ZeroRule& rule) override { guardian_.emplace(Guardian::Line{.fd = socket_}, rule, name_); }
 

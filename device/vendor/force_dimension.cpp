@@ -142,8 +142,6 @@ private:
     bool               readStatus(const LineOrder& order, LineSample& sample) noexcept;
     [[noreturn]] void  refuse(const std::string& what);
 
-    [[nodiscard]] double now() const;
-
     ForceDimensionSettings            settings_;
     std::unique_ptr<const DrdLibrary> drd_;
     DrdDevice                         device_;
@@ -151,12 +149,6 @@ private:
     std::optional<double>             failing_;         ///< [s] since when each exchange fails
     std::optional<double> off_; ///< [s] since when the device, which has switched it off, is asked for no force
 };
-
-double ForceDimensionLine::now() const
-{
-    if (settings_.clock) return settings_.clock();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void ForceDimensionLine::refuse(const std::string& what)
 {
@@ -274,7 +266,7 @@ bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) 
     sample.fault      = *sample.words ? DeviceFault::ownWatchdog : DeviceFault::none;
     const bool mayTry = sample.fault != DeviceFault::none && isHomed_ && !isWanted(status[kForceOff]) && !order.enable;
     if (!mayTry) off_.reset();
-    if (mayTry && now() - *(off_ = off_.value_or(now())) >= settings_.restToTry) {
+    if (mayTry && settings_.clock() - *(off_ = off_.value_or(settings_.clock())) >= settings_.restToTry) {
         off_.reset();
         switchOn();
     }
@@ -291,8 +283,8 @@ void ForceDimensionLine::exchange(const LineOrder& order, LineSample& sample) no
     if (isTaken && isRead >= 0 && isTold)
         failing_.reset();
     else if (!failing_)
-        failing_ = now();
-    const double past = failing_ ? now() - *failing_ : 0;
+        failing_ = settings_.clock();
+    const double past = failing_ ? settings_.clock() - *failing_ : 0;
     if (past < kDeaf || isFinal(sample.fault)) return;
     static_cast<void>(render({})); // the device may still hear
     drd_->dhdStop(char(device_.id));

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "device/detail/machine_time.h"
 #include "device/device_record.h"
 #include "device/line_device.h"
 
@@ -22,7 +23,7 @@ struct ForceDimensionSettings {
     double mostErrors    = 75e-3; ///< [s] of calls that all fail, after which the link is lost
     double restToTry     = 0.5;   ///< [s] at zero force after which forces are switched on again
 
-    std::function<double()> clock{}; ///< [s] of a clock that never goes back; empty: the machine's
+    std::function<double()> clock = machineTime; ///< [s]; it never goes back
 };
 
 /// Makes the conversation with one device. The library is loaded by open().

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <list>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <utility>
 
@@ -109,8 +110,8 @@ private:
     Beat*                            beat_      = nullptr; ///< null: no callback is scheduled
     bool                             isHomed_   = false;
     int                              looked_    = 0; ///< exchanges since the last look at the calibration
-    int                              off_       = 0; ///< exchanges at zero force since the device refused one
-    const char*                      refused_   = nullptr;
+    std::optional<double>            off_;           ///< [s] since when it is asked for none, after one that it refused
+    const char*                      refused_ = nullptr;
 };
 
 void OpenHapticsLine::open(HapticDeviceInfo& info)
@@ -121,8 +122,9 @@ void OpenHapticsLine::open(HapticDeviceInfo& info)
         throw Error(std::string("OpenHaptics cannot be used: ") + error.what() +
                     "; install OpenHaptics and the Touch driver, or set OPENHAPTICS to the folder of libHD.so");
     }
-    looked_ = off_ = 0;
-    refused_       = nullptr;
+    looked_  = 0;
+    refused_ = nullptr;
+    off_.reset();
     static_cast<void>(worstError()); // of before
     device_             = hd_->hdInitDevice(settings_.name.empty() ? nullptr : settings_.name.c_str());
     const HdError error = hd_->hdGetError();
@@ -251,9 +253,10 @@ void OpenHapticsLine::judge(unsigned code, const LineOrder& order, LineSample& s
     }
     if (const char* words = wordsOf(code)) {
         refused_ = words;
-        off_     = 0;
+        off_.reset();
     }
-    if (refused_ && !order.enable && ++off_ >= settings_.exchangesToTry) {
+    if (refused_ && !order.enable &&
+        settings_.clock() - *(off_ = off_.value_or(settings_.clock())) >= settings_.restToTry) {
         refused_ = nullptr;
         hd_->hdEnable(kHdOutput);
     }

@@ -1,7 +1,9 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 
+#include "device/detail/machine_time.h"
 #include "device/device_record.h"
 #include "device/line_device.h"
 
@@ -12,8 +14,10 @@ extern const DeviceRecord kOpenHapticsRecord;
 
 struct OpenHapticsSettings {
     std::string name{};                ///< of the device in their setup program; empty: the default one
-    int         exchangesToTry  = 500; ///< exchanges at zero force after which forces are switched on again
+    double      restToTry       = 0.5; ///< [s] at zero force after which forces are switched on again
     int         exchangesToLook = 200; ///< between looks whether the device is calibrated, while it is not
+
+    std::function<double()> clock = machineTime; ///< [s]; it never goes back
 };
 
 /// Makes the conversation with one device. The library is loaded by open(); its scheduler's thread makes the exchanges.

@@ -112,9 +112,9 @@ typedef struct palpate_points {
                                             0 to 1e5 [1/m]; may be NULL. The scene's key "stiffening" wins over it */
     int             stiffening_type;   /**< palpate_number */
     size_t          stiffening_stride; /**< bytes; 0: side by side */
-    const void*     foundation;      /**< pressure per deflection below each point, 1 to 1e15 [Pa/m]; may be NULL. It is
-                                            taken where the scene's key "below" is "own" */
-    int             foundation_type; /**< palpate_number */
+    const void*     foundation;        /**< pressure per deflection below each point, 1 to 1e15 [Pa/m]; may be NULL. It
+                                            is taken where the scene's key "below" is "own" */
+    int             foundation_type;   /**< palpate_number */
     size_t          foundation_stride; /**< bytes; 0: side by side */
 } palpate_points;
 
@@ -223,13 +223,13 @@ typedef struct palpate_session_settings {
 
 /** The hand at one tick. */
 typedef struct palpate_hand {
-    size_t size;        /**< of this struct, as PALPATE_INIT sets it */
-    double position[3]; /**< of the haptic interface point [m] */
-    double velocity[3]; /**< filtered [m/s]; all 0: taken from the positions of the last 15 ms */
-    double age; /**< of the position [s]; of one that is repeated until a tracker's next it grows, or that next one may
-                       count as a jump: more than 1 mm and 4 m/s since the last takes the force */
-    uint32_t buttons; /**< bit 0, held for 20 ms, clears a fault of the governor */
-    uint32_t absent;  /**< not 0: the device has no position now; no force flows */
+    size_t   size;        /**< of this struct, as PALPATE_INIT sets it */
+    double   position[3]; /**< of the haptic interface point [m] */
+    double   velocity[3]; /**< filtered [m/s]; all 0: taken from the positions of the last 15 ms */
+    double   age;         /**< of the position [s]; of one that is repeated until a tracker's next it grows, or that
+                             next one may count as a jump: more than 1 mm and 4 m/s since the last takes the force */
+    uint32_t buttons;     /**< bit 0, held for 20 ms, clears a fault of the governor */
+    uint32_t absent;      /**< not 0: the device has no position now; no force flows */
 } palpate_hand;
 
 /** \name Bits of palpate_answer.flags

@@ -5,9 +5,10 @@
 namespace palp {
 
 /// Returns "1 trial", "2 trials".
-[[nodiscard]] inline std::string counted(std::size_t number, const std::string& what)
+/// \param ending  of the plural: "es" for a patch
+[[nodiscard]] inline std::string counted(std::size_t number, const std::string& what, const char* ending = "s")
 {
-    return std::to_string(number) + " " + what + (number == 1 ? "" : "s");
+    return std::to_string(number) + " " + what + (number == 1 ? "" : ending);
 }
 
 } // namespace palp

@@ -27,7 +27,7 @@ std::string reasonOfErrno()
 
 [[noreturn]] void refuseToWrite(const std::filesystem::path& path, const std::string& reason)
 {
-    throw Error(shownText(path.string(), kMostOfPath) + ": cannot be written: " + reason);
+    throw Error(shownPath(path.string()) + ": cannot be written: " + reason);
 }
 
 /// Whether somebody else put this into a folder where anybody may write.
@@ -204,7 +204,7 @@ InputFile::Buffer::Buffer(const std::filesystem::path& path) : path_(path)
 {
     errno = 0;
     if (!open(path, std::ios::in | std::ios::binary))
-        throw Error(shownText(path.string(), kMostOfPath) + ": cannot be read: " + reasonOfErrno());
+        throw Error(shownPath(path.string()) + ": cannot be read: " + reasonOfErrno());
 }
 
 InputFile::Buffer::int_type InputFile::Buffer::underflow()
@@ -248,7 +248,7 @@ bool isThere(const std::filesystem::path& path)
 {
     std::error_code failure;
     const bool      there = std::filesystem::exists(path, failure);
-    if (failure) throw Error(shownText(path.string(), kMostOfPath) + ": cannot be read: " + failure.message());
+    if (failure) throw Error(shownPath(path.string()) + ": cannot be read: " + failure.message());
     return there;
 }
 

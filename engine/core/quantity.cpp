@@ -126,7 +126,7 @@ ColumnHead columnHead(std::string_view cell) noexcept
     const std::size_t      open  = std::min(cell.find_first_of("[("), cell.size());
     const std::size_t      close = cell.find_first_of("])", open);
     const std::string_view name  = trimmed(cell.substr(0, open));
-    if (close == std::string_view::npos) return {name, {}};
+    if (close == std::string_view::npos) return {name, cell.substr(open)};
     const std::string_view unit = trimmed(cell.substr(open + 1, close - open - 1));
     return {name, unit == "1" ? std::string_view() : unit};
 }
@@ -134,6 +134,9 @@ ColumnHead columnHead(std::string_view cell) noexcept
 double siPerUnitOf(const ColumnHead& head, Dimension dimension, const std::string& where)
 {
     if (head.unit.empty()) return 1;
+    if (head.unit.starts_with('[') || head.unit.starts_with('('))
+        throw Error(where + ": column \"" + std::string(head.name) +
+                    "\": expected a bracket that ends behind its unit, found " + inQuotes(head.unit));
     return parseQuantity("1 " + std::string(head.unit), dimension,
                          where + ": column \"" + std::string(head.name) + "\"");
 }

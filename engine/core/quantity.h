@@ -31,13 +31,13 @@ enum class Dimension {
 
 /// What the header of a table calls a column: "depth [mm]", "time(s)".
 struct ColumnHead {
-    std::string_view name, unit; ///< the unit is empty where there is none, or 1
+    std::string_view name, unit; ///< the unit is empty where there is none, or 1; "[mm" if its bracket never ends
 };
 [[nodiscard]] ColumnHead columnHead(std::string_view cell) noexcept;
 
 /// Returns the SI units in one of a column's unit; 1 where it has none.
 /// \param where  opens complaints, before the column's name
-/// \throws Error as parseQuantity() does
+/// \throws Error as parseQuantity() does, and of a bracket that never ends
 [[nodiscard]] double siPerUnitOf(const ColumnHead& head, Dimension dimension, const std::string& where);
 
 /// Returns the metres in one unit of length: m, mm, cm, um, km, in, ft.

@@ -41,6 +41,16 @@ std::string shownText(std::string_view text, std::size_t most)
     return shown;
 }
 
+std::string shownPath(std::string_view path)
+{
+    constexpr std::size_t kMost = 200; // [bytes]
+    std::string           shown = shownText(path);
+    if (shown.size() <= kMost) return shown;
+    std::size_t cut = shown.size() - kMost;
+    while ((static_cast<unsigned char>(shown[cut]) & 0xC0U) == 0x80) ++cut; // to where a character begins
+    return "..." + shown.substr(cut);
+}
+
 std::string inQuotes(std::string_view text)
 {
     return '"' + shownText(text, kMostOfWord) + '"';

@@ -27,8 +27,8 @@ struct Utf8Character {
 /// The most of a file's own word that an error repeats [bytes].
 inline constexpr std::size_t kMostOfWord = 60;
 
-/// The most of a path that an error repeats [bytes].
-inline constexpr std::size_t kMostOfPath = 200;
+/// Returns a path as shownText() does, and of a long one "..." and its end, which has the file's name.
+[[nodiscard]] std::string shownPath(std::string_view path);
 
 /// Returns a file's own word in quotes, at most kMostOfWord of it.
 [[nodiscard]] std::string inQuotes(std::string_view text);

@@ -150,9 +150,9 @@ struct PlateSolver::Multigrid {
         double prepare(compute::Context& on, const PlateKernels& by, const Plate& wanted, std::size_t wantedLoads,
                        double wantedTolerance)
         {
-            const auto   began   = std::chrono::steady_clock::now();
-            const double largest = extremesOf(wanted.rigidity.values()).most;
-            if (solver && isUnitOf(solver->unitRigidity(), largest) && sameButRigidity(plate, wanted) &&
+            const auto     began = std::chrono::steady_clock::now();
+            const Extremes of    = extremesOf(wanted.rigidity.values());
+            if (solver && isUnitOf(solver->unitRigidity(), of) && sameButRigidity(plate, wanted) &&
                 tolerance == wantedTolerance && loads == wantedLoads) {
                 solver->setRigidity(wanted.rigidity, wanted.foundationShape);
             } else {

@@ -202,7 +202,7 @@ std::string withUnitsAtNames(std::string_view header)
     for (const char c : header) {
         const bool opens = c == '[' || c == '(';
         while (opens && !text.empty() && (text.back() == ' ' || text.back() == '\t')) text.pop_back();
-        within = opens || (within && c != ']' && c != ')');
+        within = opens || (within && c != ']' && c != ')' && c != ',' && c != ';');
         if (!within || kBetween.find(c) == std::string_view::npos) text += c;
     }
     return text;
@@ -215,6 +215,14 @@ std::array<double, 4> unitsIn(const std::array<std::string_view, 4>& names, cons
     for (std::size_t k = 0; k < names.size(); ++k)
         inSi[k] = siPerUnitOf(columnHead(names[k]), k == 0 ? Dimension::time : Dimension::length, where);
     return inSi;
+}
+
+/// Returns true if a comment is a header after all, as numpy.savetxt writes it: "time [s], x [m], y [m], z [m]".
+bool namesColumns(const std::array<std::string_view, 4>& words)
+{
+    const auto ends = [&](std::size_t k, char c) { return columnHead(words[k]).name.ends_with(c); };
+    const auto time = columnHead(words[0]).name;
+    return (time == "t" || time == "time") && ends(1, 'x') && ends(2, 'y') && ends(3, 'z');
 }
 
 bool isHeader(const std::array<std::string_view, 4>& words, const std::string& where)
@@ -356,22 +364,35 @@ HandPath parseHand(std::istream& in, const std::string& name)
     Checked               checked;
     std::size_t           columns = 4;
     FurtherColumns        further;
-    std::array<double, 4> inSi{1, 1, 1, 1}; // SI units in one of a column's
+    std::array<double, 4> inSi{1, 1, 1, 1};      // SI units in one of a column's
+    std::string           comment, commentWhere; // that names columns
     std::vector<char>     line(kLongestLine);
+    const auto            take = [&](const std::string& header, const std::string& where) {
+        const Words names = wordsOf(header);
+        columns           = std::max(names.count, columns);
+        further           = furtherIn(header, where);
+        inSi              = unitsIn(names.first, where);
+        comment.clear();
+    };
     for (std::size_t number = 1; in.getline(line.data(), std::streamsize(line.size())); ++number) {
         const std::string where = name + ": line " + std::to_string(number);
         std::string_view  rest(line.data());
         if (number == 1 && rest.starts_with(kByteOrderMark)) rest.remove_prefix(kByteOrderMark.size());
         const Words words = wordsOf(rest);
-        if (words.count == 0 || words.first[0].starts_with('#')) continue;
-        if (checked.waypoints.empty() && isHeader(words.first, where)) {
-            const std::string header = withUnitsAtNames(rest);
-            const Words       names  = wordsOf(header);
-            columns                  = std::max(names.count, columns);
-            further                  = furtherIn(header, where);
-            inSi                     = unitsIn(names.first, where);
+        if (words.count == 0) continue;
+        if (words.first[0].starts_with('#')) {
+            const std::string header =
+                withUnitsAtNames(rest.substr(std::min(rest.find_first_not_of("# \t"), rest.size())));
+            if (checked.waypoints.empty() && namesColumns(wordsOf(header).first))
+                comment = header, commentWhere = where;
             continue;
         }
+        if (checked.waypoints.empty() && isHeader(words.first, where)) {
+            take(withUnitsAtNames(rest), where);
+            continue;
+        }
+        if (checked.waypoints.empty() && !comment.empty() && wordsOf(comment).count == words.count)
+            take(comment, commentWhere);
         demandColumns(words, columns, where);
         HandPose waypoint = waypointOf(words.first, inSi, where);
         if (further.buttons > 0) waypoint.buttons = buttonsOf(wordAt(rest, further.buttons), where);

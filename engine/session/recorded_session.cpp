@@ -230,9 +230,8 @@ std::unique_ptr<TickSource> openTicks(const RecordedSession& session)
 {
     auto ticks = openTicks(session.folder, session.finished);
     if (session.counted && ticks->rows() != *session.counted)
-        throw Error(session.folder.string() + ": expected the " + std::to_string(*session.counted) +
-                    " ticks that session.json counts, found " + std::to_string(ticks->rows()) +
-                    "; the recording is damaged");
+        throw Error(session.folder.string() + ": expected the " + counted(*session.counted, "tick") +
+                    " that session.json counts, found " + std::to_string(ticks->rows()) + "; the recording is damaged");
     return ticks;
 }
 
@@ -267,7 +266,8 @@ std::optional<SessionDifference> compareSessions(const RecordedSession& a, const
 std::string describe(const SessionDifference& d, const RecordedSession& a, const RecordedSession& b)
 {
     const std::string first = a.folder.string(), second = b.folder.string();
-    if (d.column.empty()) return first + " has " + d.first + " ticks and " + second + " has " + d.second;
+    if (d.column.empty())
+        return first + " has " + counted(a.records.size(), "tick") + " and " + second + " has " + d.second;
     const auto column   = std::ranges::find(sessionColumns(), d.column, &SessionColumn::name);
     const bool isVector = column != sessionColumns().end() && column->components > 1;
     return "tick " + std::to_string(d.tick) + " (" + numberText<double>(reinterpret_cast<const char*>(&d.time)) +

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/session/detail/growing_file.h"
 #include "engine/session/detail/quiet_thread.h"
@@ -275,7 +276,7 @@ struct Recording::Impl {
         try {
             files.append(batch);
         } catch (const std::exception& error) {
-            stop("recording stopped after " + std::to_string(files.rows()) + " ticks: " + error.what());
+            stop("recording stopped after " + counted(files.rows(), "tick") + ": " + error.what());
         }
     }
 
@@ -307,8 +308,8 @@ struct Recording::Impl {
             report = {rows, pushed - rows, longestGap, why, marked, marksHeard - marked};
             if (there) describeEnd(); // else another recording may have the folder's name
             if (!report.stopped && report.lost > 0)
-                say(folder.string() + ": " + std::to_string(report.lost) +
-                    " ticks were lost: its disk took them more slowly than they came");
+                say(folder.string() + ": " + counted(report.lost, "tick") +
+                    " lost: its disk was slower than the servo");
         }
         return report;
     }

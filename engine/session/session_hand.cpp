@@ -94,25 +94,6 @@ void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene,
     hand.device  = record.make(request);
 }
 
-/// Refuses a word that is neither a hand nor a file.
-void refuseUnknown(const std::string& word)
-{
-    std::error_code hidden; // reading it says why
-    if (std::filesystem::exists(word, hidden) || hidden) return;
-    std::vector<std::string_view> known;
-    std::string                   listed;
-    const auto                    add = [&](std::string_view name, bool needsWindow) {
-        known.push_back(name);
-        if (!needsWindow) listed += (listed.empty() ? "" : ", ") + std::string(name);
-    };
-    for (const auto& motion : namesOf(HandMotion{})) add(motion.name, false);
-    for (const DeviceRecord* record : deviceRecords()) add(record->name, record->holder == DeviceHolder::pointer);
-    const auto meant = nearestName(word, known);
-    throw Error("--hand " + shownText(word, kMostOfPath) + ": there is no such hand or file; " +
-                (meant ? "did you mean " + std::string(*meant) + "? " : "") + "hands: " + listed +
-                ", or the file of a hand's path");
-}
-
 /// Returns what a user should know of the hand before it touches: its scale, its clutch, and what it does not render.
 std::vector<std::string> notesOn(const HapticDeviceInfo& info, const Scene& scene, bool isDevice)
 {
@@ -137,13 +118,32 @@ std::vector<std::string> notesOn(const HapticDeviceInfo& info, const Scene& scen
 
 } // namespace
 
+void demandKnown(const std::string& word, const std::string& what, const std::filesystem::path& folder)
+{
+    if (deviceNamed(word) || valueNamed<HandMotion>(word)) return;
+    std::error_code hidden; // reading it says why
+    if (std::filesystem::exists(folder / word, hidden) || hidden) return;
+    std::vector<std::string_view> known;
+    std::string                   listed;
+    const auto                    add = [&](std::string_view name, bool needsWindow) {
+        known.push_back(name);
+        if (!needsWindow) listed += (listed.empty() ? "" : ", ") + std::string(name);
+    };
+    for (const auto& motion : namesOf(HandMotion{})) add(motion.name, false);
+    for (const DeviceRecord* record : deviceRecords()) add(record->name, record->holder == DeviceHolder::pointer);
+    const auto meant = nearestName(word, known);
+    throw Error(what + " " + shownPath(word) + ": there is no such hand or file; " +
+                (meant ? "did you mean " + std::string(*meant) + "? " : "") + "hands: " + listed +
+                ", or the file of a hand's path");
+}
+
 void demandGood(const HandChoice& choice)
 {
     const DeviceRecord* record = deviceNamed(choice.hand);
     if (record && record->holder == DeviceHolder::pointer)
         throw Error("--hand " + choice.hand + ": it needs a window, which this command does not open; try scan, or " +
                     "--hand " + std::string(kArmRecord.name));
-    if (!record && !valueNamed<HandMotion>(choice.hand)) refuseUnknown(choice.hand);
+    demandKnown(choice.hand, "--hand");
     demandFitting(choice);
 }
 

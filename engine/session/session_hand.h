@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -42,6 +43,12 @@ struct SessionHand {
     /// Returns true if a person holds it, so that it runs in real time only.
     [[nodiscard]] bool isHeldByPerson() const noexcept { return record && record->holder == DeviceHolder::person; }
 };
+
+/// Refuses a word that is neither a hand nor a file that is there.
+/// \param what    opens the complaint, before the word
+/// \param folder  where a relative path begins; empty: the current folder
+/// \throws Error naming the hands that there are, and the one that was likely meant
+void demandKnown(const std::string& word, const std::string& what, const std::filesystem::path& folder = {});
 
 /// Checks what the arguments alone show: the hand's name and the options of its device. Opening a device shows if it
 /// is plugged in.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 
 namespace palp {
@@ -85,8 +86,8 @@ public:
     {
         const std::uint64_t there = bytes_ - std::min(bytes_, header_.begin);
         if (rows > there / rowBytes)
-            throw Error(name_ + ": the header counts " + std::to_string(rows) + " ticks of " +
-                        std::to_string(rowBytes) + " bytes, found " + std::to_string(there) + " bytes");
+            throw Error(name_ + ": the header counts " + counted(rows, "tick") + " of " + std::to_string(rowBytes) +
+                        " bytes, found " + std::to_string(there) + " bytes");
     }
 
     void read(char* to, std::size_t bytes)
@@ -242,8 +243,8 @@ public:
             columns_ |= std::uint64_t(1) << k;
             rows_ = std::min(rows_, files_.back().rows); // of a session that was killed, some are a visit longer
             if (finished && files_.back().rows != files_.front().rows)
-                throw Error(files_.back().file.name() + ": expected the " + std::to_string(files_.front().rows) +
-                            " ticks that " + files_.front().file.name() + " has, found " +
+                throw Error(files_.back().file.name() + ": expected the " + counted(files_.front().rows, "tick") +
+                            " that " + files_.front().file.name() + " has, found " +
                             std::to_string(files_.back().rows) + "; the recording is damaged");
         }
     }

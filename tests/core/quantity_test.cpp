@@ -113,11 +113,14 @@ TEST(Quantity, AColumnsHeadIsItsNameAndItsUnit)
     EXPECT_EQ(both(" force( mN ) "), "force|mN");
     EXPECT_EQ(both("nx [1]"), "nx|");
     EXPECT_EQ(both("x]"), "x]|") << "no bracket opens";
-    EXPECT_EQ(both("x[mm"), "x|");
+    EXPECT_EQ(both("x"), "x|");
+    EXPECT_EQ(both("x [mm"), "x|[mm");
     EXPECT_EQ(siPerUnitOf(columnHead("x[mm]"), Dimension::length, "a.csv"), 1e-3);
     EXPECT_EQ(siPerUnitOf(columnHead("x"), Dimension::length, "a.csv"), 1);
     EXPECT_TRUE(holds(refusalOf([] { (void)siPerUnitOf(columnHead("x [s]"), Dimension::length, "a.csv"); }),
                       {"a.csv: column \"x\": unknown unit \"s\"", "m, mm"}));
+    EXPECT_TRUE(holds(refusalOf([] { (void)siPerUnitOf(columnHead("x [mm"), Dimension::length, "a.csv"); }),
+                      {"a.csv: column \"x\": expected a bracket that ends", "found \"[mm\""}));
 }
 
 TEST(Quantity, WhatIsFarTooLongIsRepeatedInPart)

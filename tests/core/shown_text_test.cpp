@@ -27,6 +27,14 @@ TEST(ShownText, IsCutBetweenCharacters)
     EXPECT_EQ(inQuotes(std::string(61, 'a')), '"' + std::string(60, 'a') + "...\"");
 }
 
+TEST(ShownText, OfALongPathTheNameOfTheFileIsKept)
+{
+    const std::string name = "caf\xc3\xa9.csv";
+    EXPECT_EQ(shownPath("a/" + name), "a/" + name);
+    EXPECT_EQ(shownPath(std::string(300, 'a') + "/\n" + name), "..." + std::string(189, 'a') + "/?" + name);
+    EXPECT_EQ(shownPath("a\xc3\xa9" + std::string(199, 'b')), "..." + std::string(199, 'b')) << "no half characters";
+}
+
 TEST(ShownText, IsWhatEveryErrorSays)
 {
     EXPECT_STREQ(Error("a file \"\x1b]0;title\x07\" of\ntwo lines").what(), "a file \"?]0;title?\" of?two lines");

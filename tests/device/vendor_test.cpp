@@ -83,7 +83,9 @@ constexpr Maker kMakers[] = {
      [] { return forceDimensionInfo(33); }, [](const glm::dvec3& v) { return glm::dvec3(v.y, v.z, v.x); }, 1,
      &kForceDimensionRecord, 1, DeviceFault::linkLost},
     {"OpenHaptics", "OPENHAPTICS", PALPATE_FAKE_SDK "/libHD.so", "hdUnschedule",
-     [] { return makeOpenHapticsLine({.exchangesToTry = 50, .exchangesToLook = 20}); },
+     [] {
+         return makeOpenHapticsLine({.restToTry = 0.05, .exchangesToLook = 20, .clock = [] { return virtualTime; }});
+     },
      [] { return openHapticsInfo("Touch"); }, [](const glm::dvec3& v) { return v; }, 1e-3, &kOpenHapticsRecord, 0x302,
      DeviceFault::linkLost}};
 
@@ -542,6 +544,28 @@ TEST_P(OpenHaptics, ErrorsOfAForceAreSaidAndTheForceComesBack)
         run(0.3, push);
         EXPECT_EQ(state.fault, DeviceFault::none);
         EXPECT_GT(force_(), 1);
+        device.close();
+    }
+}
+
+/// However many exchanges are made in that time: a user may set the scheduler's rate.
+TEST_P(OpenHaptics, ItsPatienceIsOneInSeconds)
+{
+    for (const int eachTick : {1, 4}) {
+        device.open();
+        run(0.1, push);
+        const auto ticks = [&](int count) {
+            const double rest = now;
+            for (int n = 0; n < count * eachTick; ++n) {
+                virtualTime = now = rest + kTick * n / eachTick;
+                state             = device.exchange(push, now);
+            }
+        };
+        sdk.error = 0x200;
+        ticks(45);
+        EXPECT_EQ(state.fault, DeviceFault::ownWatchdog) << eachTick << ": it rests for 50 ms in this test";
+        ticks(20);
+        EXPECT_EQ(state.fault, DeviceFault::none) << eachTick;
         device.close();
     }
 }

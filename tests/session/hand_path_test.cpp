@@ -65,6 +65,23 @@ TEST(HandPath, AHeaderMayStateUnitsOfTimeAndLength)
     EXPECT_TRUE(
         holds(refusal("time[min],x,y,z\n0,0,0,0\n"), {"line 1: column \"time\"", "unknown unit \"min\"", "s, ms"}));
     EXPECT_TRUE(holds(refusal("time,x[s],y,z\n0,0,0,0\n"), {"column \"x\"", "m, mm, cm"}));
+    for (const char* unclosed : {"time,x [mm,y,z\n", "# time,x [mm,y,z\n"})
+        EXPECT_TRUE(holds(refusal(unclosed + std::string("0,0,0,0\n1,0,0,0\n")),
+                          {"line 1: column \"x\": expected a bracket that ends", "found \"[mm\""}))
+            << unclosed;
+    EXPECT_EQ(parsed("time,x,y,z,force [N,buttons\n0,0,0,0,9,1\n1,0,0,0,9,1\n").buttons(0), 1U)
+        << "a unit that nobody reads";
+}
+
+TEST(HandPath, AHeaderInAComment)
+{
+    const HandPath hand = parsed("# of today\n# time [ms],hip_x [mm],hip_y,hip_z,buttons\n0,1,2,3,0\n500,2,2,3,1\n");
+    EXPECT_EQ(hand.duration(), 0.5);
+    EXPECT_NEAR(hand.position(0).x, 1e-3, 1e-15);
+    EXPECT_EQ(hand.buttons(0.5), 1U);
+
+    for (const char* said : {"# time x y z in the lab\n", "# the x, y, z\n", "#\n", "# t [ms] x y z\ntime x y z\n"})
+        EXPECT_EQ(parsed(said + std::string("0,1,2,3\n500,2,2,3\n")).duration(), 500) << said;
 }
 
 TEST(HandPath, FingerprintsTellHandsApart)

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -13,6 +12,7 @@
 #include <unistd.h>
 
 #include "device/detail/guardian.h"
+#include "device/detail/machine_time.h"
 #include "device/falcon/detail/byte_ring.h"
 #include "device/falcon/detail/libusb_words.h"
 #include "device/falcon/detail/usb_node.h"
@@ -193,10 +193,7 @@ public:
         handle_.reset();
     }
 
-    [[nodiscard]] double now() const noexcept override
-    {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-    }
+    [[nodiscard]] double now() const noexcept override { return machineTime(); }
 
     void control(FtdiRequest request, std::uint16_t value) override
     {

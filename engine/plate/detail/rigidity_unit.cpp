@@ -9,10 +9,11 @@ namespace palp {
 
 namespace {
 
+constexpr double kLeast = 1e-15, kMost = 1e15; // relative to the unit [1]
+
 void checkFits(double rigidity, double unit)
 {
-    constexpr double kLeast = 1e-15, kMost = 1e15; // relative to the unit [1]
-    const double     relative = rigidity / unit;
+    const double relative = rigidity / unit;
     if (!(relative > kLeast && relative < kMost))
         throw Error("plate: the rigidity spans too many orders of magnitude for 32-bit arithmetic: there is " +
                     formatQuantity(rigidity, "N m") + ", the largest being about " + formatQuantity(unit, "N m"));
@@ -25,10 +26,10 @@ double rigidityUnit(double largest) noexcept
     return std::ldexp(1.0, std::ilogb(largest));
 }
 
-bool isUnitOf(double unit, double largest) noexcept
+bool isUnitOf(double unit, const Extremes& rigidity) noexcept
 {
     constexpr double kApart = 1e3; // [1]
-    return largest < kApart * unit && largest > unit / kApart;
+    return rigidity.most < kApart * unit && rigidity.most > unit / kApart && rigidity.least > kLeast * unit;
 }
 
 Extremes inRigidityUnits(std::span<const double> rigidities, double unit, std::span<float> relative)

@@ -153,9 +153,16 @@ std::string jsonOf(const BenchReport& report)
 {
     Json rows = Json::array();
     for (const BenchRow& row : report.rows) rows.push_back(jsonOf(row));
-    const Json all = {{"solver", report.solver}, {"processor", report.processor},     {"cholmod", report.cholmod},
-                      {"eigen", report.eigen},   {"nanoflann", report.nanoflann},     {"runs", report.runs},
-                      {"quick", report.quick},   {"environment", report.environment}, {"rows", rows}};
+    const Json all = {{"solver", report.solver},
+                      {"clock", report.clock == Clock::processor ? "processor" : "wall"},
+                      {"processor", report.processor},
+                      {"cholmod", report.cholmod},
+                      {"eigen", report.eigen},
+                      {"nanoflann", report.nanoflann},
+                      {"runs", report.runs},
+                      {"quick", report.quick},
+                      {"environment", report.environment},
+                      {"rows", rows}};
     return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -394,7 +394,7 @@ void addCalibrateCommand(CLI::App& app)
         "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"
         "  palpate calibrate --emulator --json");
     command->callback([command, o] {
-        allowOnlyWith(*command, "--emulator", {"--mass", kFalconCounts.flag, "--json"});
+        allowOnlyWith(*command, "--emulator", {"--mass", std::string(kFalconCounts.flag), "--json"});
         calibrate(*o);
     });
 }

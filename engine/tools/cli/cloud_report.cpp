@@ -31,8 +31,7 @@ void refuseSourceAsTarget(const std::string& option, const std::string& source, 
 {
     std::error_code none; // no such file: nothing is lost
     if (!std::filesystem::equivalent(source, target, none) || none) return;
-    throw Error(option + ": " + shownText(target, kMostOfPath) +
-                " is read as well, and would be overwritten; choose another name");
+    throw Error(option + ": " + shownPath(target) + " is read as well, and would be overwritten; choose another name");
 }
 
 void refuseSameTarget(const std::string& first, const std::string& one, const std::string& second,
@@ -43,7 +42,7 @@ void refuseSameTarget(const std::string& first, const std::string& one, const st
         return std::filesystem::weakly_canonical(std::filesystem::absolute(file, none), none);
     };
     if (one.empty() || other.empty() || whole(one) != whole(other)) return;
-    throw Error(first + " and " + second + ": expected two files, found " + shownText(one, kMostOfPath) +
+    throw Error(first + " and " + second + ": expected two files, found " + shownPath(one) +
                 " twice, so that one would be lost; name another file");
 }
 

@@ -46,7 +46,7 @@ void demandOwner(const CLI::App& command, const std::string& owner, std::initial
             throw Error(option + " belongs to " + owner + ", which is not given; add " + owner + " or omit " + option);
 }
 
-void allowOnlyWith(const CLI::App& command, const std::string& option, std::initializer_list<std::string_view> allowed)
+void allowOnlyWith(const CLI::App& command, const std::string& option, const std::vector<std::string>& allowed)
 {
     if (command.get_option(option)->count() == 0) return;
     for (const CLI::Option* other : command.get_options()) {

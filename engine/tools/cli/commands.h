@@ -66,7 +66,7 @@ void demandOwner(const CLI::App& command, const std::string& owner, std::initial
 /// Refuses what has no effect beside an option, if that is given.
 /// \param allowed  the names of what has one
 /// \throws Error naming both
-void allowOnlyWith(const CLI::App& command, const std::string& option, std::initializer_list<std::string_view> allowed);
+void allowOnlyWith(const CLI::App& command, const std::string& option, const std::vector<std::string>& allowed);
 
 /// Reads the force that presses [N].
 /// \throws Error naming --force

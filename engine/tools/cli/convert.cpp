@@ -18,7 +18,7 @@ namespace {
 struct ConvertOptions {
     SceneSource source;
     std::string target, encoding = name(CloudEncoding::binaryLittleEndian);
-    bool        json = false;
+    bool        json = false, encodingGiven = false;
 };
 
 /// What a cloud has beside its stiffness as fields, which all formats can hold.
@@ -43,7 +43,10 @@ void convert(const ConvertOptions& options)
 {
     const CloudEncoding encoding = optionNamed<CloudEncoding>("--encoding", options.encoding);
     const auto&         target   = formatToWrite(options.target);
-    const Scene         scene    = withPointsOfFile(options.source.load());
+    if (options.encodingGiven && target.format != CloudFormat::ply && target.format != CloudFormat::pcd)
+        throw Error("--encoding has no effect on " + std::string(target.name) + " files, found " +
+                    shownPath(options.target) + "; omit it, or name a .ply or .pcd file");
+    const Scene scene = withPointsOfFile(options.source.load());
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
     const LoadedCloud loaded = options.source.loadCloud(scene);
     const bool        faces  = target.holdsFaces;
@@ -84,7 +87,10 @@ void addConvertCommand(CLI::App& app)
                     "  palpate convert scan.pcd scan.ply --length-unit mm --stiffness-property intensity \\\n"
                     "    --stiffness-range 20kPa,2MPa\n"
                     "  palpate convert scan.ply ramp.csv --stiffness linear:from=2e4,to=2e6,axis=z");
-    command->callback([options] { convert(*options); });
+    command->callback([command, options] {
+        options->encodingGiven = command->get_option("--encoding")->count() > 0;
+        convert(*options);
+    });
 }
 
 } // namespace palp

@@ -7,9 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/scene_source.h"
@@ -44,6 +46,18 @@ void writePage(const std::string& file, const std::string& html)
     writeFileWhole(file, [&](std::ostream& stream) { stream << html; });
 }
 
+void printWritten(const FitOptions& o)
+{
+    for (const std::string& file : {o.out, o.page})
+        if (!file.empty()) std::printf("  written     %s\n", file.c_str());
+}
+
+void addWritten(Json& json, const FitOptions& o)
+{
+    json["written"] = o.out.empty() ? Json() : Json(o.out);
+    json["page"]    = o.page.empty() ? Json() : Json(o.page);
+}
+
 // --- presses
 
 Json jsonOf(const fit::Estimate& e)
@@ -70,7 +84,7 @@ Json jsonOf(const fit::Probe& probe, const fit::ProbeFit& found)
 void printProbes(const FitOptions& o, const fit::ProbesFit& all)
 {
     std::printf("%s: %s, 95 %% intervals from the covariance of each fit\n\n", o.source.name.c_str(),
-                all.probes.size() == 1 ? "1 press" : (std::to_string(all.probes.size()) + " presses").c_str());
+                counted(all.probes.size(), "press", "es").c_str());
     std::printf("%-10s %-34s %-34s %9s %9s %9s %9s  %s\n", "probe", "K", "b", "residual", "linear", "Hertz", "cubic",
                 "relaxation");
     for (const fit::ProbeFit& p : all.probes)
@@ -85,6 +99,7 @@ void printProbes(const FitOptions& o, const fit::ProbesFit& all)
                 report::percent(all.medianResidual("cubic")).c_str());
     std::printf("for a scene:  \"stiffening\": %.4g, \"relaxation\": \"%s\"\n", all.stiffening,
                 relaxationText(all.relaxation).c_str());
+    printWritten(o);
 }
 
 /// Writes what was felt at the places of the presses, as a map that the command fits in turn.
@@ -140,6 +155,7 @@ void fitProbes(const FitOptions& o)
               {"relaxation", relaxationText(all.relaxation)},
               {"residual", all.medianResidual()},
               {"warnings", unused}};
+    addWritten(json, o);
     for (std::size_t n = 0; n < probes.size(); ++n) json["probes"].push_back(jsonOf(probes[n], all.probes[n]));
     std::cout << jsonText(json);
 }
@@ -209,7 +225,7 @@ void printMap(const FitOptions& o, const PointCloud& measured, const fit::FeltFi
     std::printf("  steps       %d, solved on %s\n", found.steps, solver.c_str());
     std::printf("  left over   %s at the median: noise, and contrast within %s, which no touch can tell\n",
                 report::percent(found.rest).c_str(), formatQuantity(found.reach, "m").c_str());
-    if (!o.out.empty()) std::printf("  written     %s\n", o.out.c_str());
+    printWritten(o);
 }
 
 void fitMap(const FitOptions& o)
@@ -250,21 +266,22 @@ void fitMap(const FitOptions& o)
         return;
     }
     const auto [soft, hard] = std::ranges::minmax(found.object.cloud().stiffness());
-    std::cout << jsonText(Json{{"name", o.source.name},
-                               {"points", loaded.cloud.size()},
-                               {"felt_stiffness_median", median(loaded.cloud.stiffness())},
-                               {"modulus_median", median(found.object.cloud().stiffness())},
-                               {"modulus_min", soft},
-                               {"modulus_max", hard},
-                               {"footprint_radius", scene.patch.footprintRadius},
-                               {"steps", found.steps},
-                               {"residual", found.rest},
-                               {"unsettled", found.unsettled},
-                               {"reach", found.reach},
-                               {"left_out", found.leftOut},
-                               {"solved_on", solver.name()},
-                               {"written", o.out.empty() ? Json() : Json(o.out)},
-                               {"warnings", odd}});
+    Json json{{"name", o.source.name},
+              {"points", loaded.cloud.size()},
+              {"felt_stiffness_median", median(loaded.cloud.stiffness())},
+              {"modulus_median", median(found.object.cloud().stiffness())},
+              {"modulus_min", soft},
+              {"modulus_max", hard},
+              {"footprint_radius", scene.patch.footprintRadius},
+              {"steps", found.steps},
+              {"residual", found.rest},
+              {"unsettled", found.unsettled},
+              {"reach", found.reach},
+              {"left_out", found.leftOut},
+              {"solved_on", solver.name()},
+              {"warnings", odd}};
+    addWritten(json, o);
+    std::cout << jsonText(json);
 }
 
 } // namespace
@@ -293,12 +310,17 @@ void addFitCommand(CLI::App& app)
         "a unit stands in brackets, as in depth [mm], else they are m, N and s.\n"
         "A map is a cloud with the property felt_stiffness [N/m], or --stiffness-unit N/m.\n"
         "Touch the object with the thickness and foundation with which it was fitted.");
-    command->callback([o] {
+    command->callback([command, o] {
         if (!o->out.empty()) static_cast<void>(formatToWrite(o->out)); // first, refuses a name of no known format
         if (!o->page.empty() && std::filesystem::path(o->page).extension() != ".html")
             throw Error("--page: expected a file that ends in .html, found \"" + o->page + "\"");
         const bool isScene = o->source.name.ends_with(".json") || o->source.name.starts_with(kSamplePrefix);
-        if (!isScene && fit::holdsProbes(o->source.name)) return fitProbes(*o);
+        if (!isScene && fit::holdsProbes(o->source.name)) {
+            if (command->get_option("--places")->count() > 0)
+                throw Error("--places has no effect on presses over depth, found " + shownPath(o->source.name) +
+                            "; a map of felt stiffness has places");
+            return fitProbes(*o);
+        }
         fitMap(*o);
     });
 }

@@ -49,8 +49,8 @@ void demandGenerated(const HandOptions& o)
     const bool          moves  = record ? record->holder == DeviceHolder::scriptedHand : motion.has_value();
     const auto          demand = [&](const char* option, const std::string& text, const std::string& hands, bool has) {
         if (text.empty() || has) return;
-        throw Error(std::string(option) + " belongs to the hands " + hands + ", found --hand " +
-                             shownText(o.hand, kMostOfPath) + "; omit one of the two");
+        throw Error(std::string(option) + " belongs to the hands " + hands + ", found --hand " + shownPath(o.hand) +
+                             "; omit one of the two");
     };
     demand("--speed", o.speed, generatedHands(), moves);
     demand("--press-depth", o.depth, generatedHands(), moves);

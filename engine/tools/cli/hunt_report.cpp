@@ -70,7 +70,7 @@ nlohmann::json jsonOf(const HuntScore& s)
 
 void printText(const HuntScore& s, const study::Hunt& hunt)
 {
-    std::cout << "found " << s.found << " of " << s.nodules.size() << " nodules, "
+    std::cout << "found " << s.found << " of " << counted(s.nodules.size(), "nodule") << ", "
               << counted(s.falseAlarms, "false alarm") << "; mark " << percent(s.mark) << " = "
               << HuntScore::kMarkFormula << "\n";
     std::cout.flush(); // the table is printed by the other library

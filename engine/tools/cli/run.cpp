@@ -59,8 +59,8 @@ void replay(const ReplayOptions& o)
     scene.solver = o.solver.empty() ? session.solver : o.solver;
     if (session.records.empty()) throw Error(o.folder + ": it has no ticks, so there is nothing to replay");
     if (!session.whyIncomplete.empty())
-        warn({o.folder + " is not complete: " + session.whyIncomplete + "; the " +
-              std::to_string(session.records.size()) + " ticks that it has are replayed"});
+        warn({o.folder + " is not complete: " + session.whyIncomplete + "; what it has is replayed, " +
+              counted(session.records.size(), "tick")});
     const SoftObject object = loadObject(scene).object;
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         warn({"the cloud is not the recorded one: " + scene.cloud + " has changed"});
@@ -109,6 +109,9 @@ void addRunCommand(CLI::App& app)
                  "  palpate run scan.ply --length-unit mm --stiffness-property quality --stiffness-range 20kPa,2MPa\n"
                  "  palpate run samples/scenes/skin_wart.json --print-config");
     run_->callback([run_, o] {
+        std::vector<std::string> ofScenes{"SCENE", "--flat", "--json"};
+        for (const SceneKey* key : sceneKeysWith(&study::huntKeys())) ofScenes.push_back(flagOf(key->name));
+        allowOnlyWith(*run_, "--print-config", ofScenes);
         o->session.command = commandOf(*run_);
         o->session.json    = o->json;
         run(*o);

@@ -113,7 +113,7 @@ Scene sceneFrom(const std::string& name, const std::map<std::string, std::string
     else
         static_cast<void>(openRegularFile(name));
     if (flags.contains("cloud"))
-        throw Error("--cloud: the cloud is already named, " + shownText(name, kMostOfPath) + "; omit one of the two");
+        throw Error("--cloud: the cloud is already named, " + shownPath(name) + "; omit one of the two");
     overrides.flags.try_emplace("cloud", name); // not as JSON: a file's name may hold bytes that JSON cannot
     return parseScene("{}", name, ".", overrides);
 }

@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "engine/core/counted.h"
 #include "engine/core/quantity.h"
 #include "engine/session/force_state.h"
 
@@ -72,16 +73,16 @@ nlohmann::json jsonOf(const SessionSummary& s)
 void printText(const SessionSummary& s, const std::string& solver, const std::string& hand)
 {
     const auto seconds = [](double t) { return formatQuantity(t, "s"); };
-    std::cout << s.ticks << " ticks, " << s.contactTicks << " in contact; " << s.patches << " patches on " << solver
-              << "; in the hand: " << hand << "\n";
+    std::cout << counted(s.ticks, "tick") << ", " << s.contactTicks << " in contact; "
+              << counted(s.patches, "patch", "es") << " on " << solver << "; in the hand: " << hand << "\n";
     if (s.contactTicks > 0)
         std::cout << "  force at most " << formatQuantity(s.mostForce, "N") << ", depth at most "
                   << formatQuantity(s.mostDepth, "m") << ", compliance " << formatQuantity(s.leastCompliance, "m/N")
                   << " to " << formatQuantity(s.mostCompliance, "m/N") << "\n";
     if (s.comingOn > 0) std::cout << "  " << onComingOn(s) << "\n";
     if (s.forceless > 0)
-        std::cout << "  without force for " << s.forceless
-                  << " ticks that pressed, the last because: " << s.whyForceless() << "\n";
+        std::cout << "  without force for " << counted(s.forceless, "tick")
+                  << " that pressed, the last because: " << s.whyForceless() << "\n";
     else if (s.contactTicks > 0 && s.patches == 0 && s.failedPatches > 0)
         std::cout << "  what was felt is the homogeneous law of each place, as no window was solved; the last because: "
                   << s.why << "\n";
@@ -105,25 +106,25 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
     const bool solvedNone = s.patches == 0 && s.failedPatches > 0;
     if (s.contactTicks > 0 && s.mostForce == 0 && s.fault == GovernorFault::none)
         say("the hand touched, but no force came on: " +
-            (solvedNone        ? "none of " + std::to_string(s.failedPatches) + " patches could be solved: " + s.why
+            (solvedNone        ? "none of " + counted(s.failedPatches, "patch", "es") + " could be solved: " + s.why
              : s.forceless > 0 ? s.whyForceless()
                                : "it stayed on the surface and never pressed"));
     if (s.fault != GovernorFault::none) say(onGovernor(s));
     if (s.deviceFault != DeviceFault::none) say(onDevice(s));
     if (s.beyondTheory > 0)
         say("the deflection exceeded half the thickness, or twice it with large deflections, in " +
-            std::to_string(s.beyondTheory) + " ticks: the theory of the sheet does not hold there");
+            counted(s.beyondTheory, "tick") + ": the theory of the sheet does not hold there");
     if (s.beyondTable > 0)
-        say("the contact left the table's reach in " + std::to_string(s.beyondTable) +
-            " ticks: raise table_size or deformation_rate for fast hands");
+        say("the contact left the table's reach in " + counted(s.beyondTable, "tick") +
+            ": raise table_size or deformation_rate for fast hands");
     if (s.oldTable > 0)
         say("the plate did not answer for a quarter of a second, which took the force for " +
-            std::to_string(s.oldTable) + " ticks: lower cells, deformation_rate or table_size");
+            counted(s.oldTable, "tick") + ": lower cells, deformation_rate or table_size");
     if (10 * s.staleTicks > s.contactTicks) // one late patch is no slow machine
-        say(std::to_string(s.staleTicks) + " ticks had a patch older than three of its periods: lower cells, "
-                                           "deformation_rate or table_size");
+        say(counted(s.staleTicks, "tick") + " had a patch older than three of its periods: lower cells, "
+                                            "deformation_rate or table_size");
     if (s.failedPatches > 0 && !solvedNone)
-        say(std::to_string(s.failedPatches) + " patches could not be solved: " + s.why);
+        say(counted(s.failedPatches, "patch", "es") + " could not be solved: " + s.why);
     return said;
 }
 

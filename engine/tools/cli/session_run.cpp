@@ -162,8 +162,8 @@ std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionPar
 
 std::string onUnheard(const SessionRun& run)
 {
-    return std::to_string(run.unheard) +
-           " ticks were not counted in, because this program was kept from reading them for four seconds";
+    return counted(run.unheard, "tick") +
+           " not counted in, because this program was kept from reading them for four seconds";
 }
 
 } // namespace
@@ -230,7 +230,7 @@ void demandWhole(const SessionRun& run)
     if (const std::string why = whyStopped(run.summary); !why.empty()) throw CheckFailed(why);
     if (run.unheard > 0) throw CheckFailed(onUnheard(run));
     if (run.recorded && run.recorded->lost > 0)
-        throw CheckFailed(run.folder + ": " + std::to_string(run.recorded->lost) + " ticks were lost");
+        throw CheckFailed(run.folder + ": " + counted(run.recorded->lost, "tick") + " lost");
     if (run.recorded && run.recorded->stopped) throw CheckFailed(run.folder + ": " + *run.recorded->stopped);
 }
 

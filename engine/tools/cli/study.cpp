@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/study_report.h"
 #include "engine/tools/cli/study_run.h"
@@ -43,10 +44,11 @@ void study_(const StudyOptions& o, bool handGiven)
                                              {"trials", went.trials},
                                              {"done", went.done},
                                              {"paused", went.paused},
+                                             {"unfelt", went.unfelt},
                                              {"warnings", went.warnings},
                                              {"table", went.table.string()}});
     else
-        std::cout << went.done << " of " << went.trials << " trials in " << went.table.string() << "\n";
+        std::cout << went.done << " of " << counted(went.trials, "trial") << " in " << went.table.string() << "\n";
 }
 
 } // namespace

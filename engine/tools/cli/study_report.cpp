@@ -61,6 +61,8 @@ Answers answersIn(const std::vector<std::string>& folders)
                 throw Error(participant.string() + ": expected participants of one study, found another plan than that "
                                                    "of the first; analyse each plan's participants by themselves");
             const auto [before, isNew] = seen.try_emplace(file.participant, participant);
+            if (std::error_code ignored; !isNew && std::filesystem::equivalent(before->second, participant, ignored))
+                throw Error(participant.string() + ": expected each folder once, found it again; name it once");
             if (!isNew)
                 throw Error(participant.string() + ": expected each participant once, found " +
                             inQuotes(file.participant) + " again, who is also in " + before->second.string() +
@@ -186,8 +188,8 @@ void analyseStudies(const std::vector<std::string>& folders, const std::filesyst
                                                        " left out, because nothing was felt in a touch and so the "
                                                        "answer is not valid";
     if (all.rows.empty())
-        throw Error(folders.front() + ": expected answered trials, found none yet" +
-                    (leftOut.empty() ? "" : "; " + leftOut));
+        throw Error(folders.front() + (leftOut.empty() ? ": expected answered trials, found none yet"
+                                                       : ": expected trials that were felt, found none; " + leftOut));
     const auto summaries = study::analyse(all.rows, all.stiffnesses);
     if (!plot.empty()) writeFileWhole(plot, [&](std::ostream& file) { file << study::analysisSvg(summaries); });
     if (json) {
@@ -200,8 +202,10 @@ void analyseStudies(const std::vector<std::string>& folders, const std::filesyst
         return;
     }
     std::cout << counted(all.rows.size(), "trial") << " of " << counted(all.participants, "participant")
-              << "; intervals of 95 %: shares by Wilson's score, which assumes independent trials, means "
-                 "by a bootstrap over participants\n";
+              << "; intervals of 95 %: shares by Wilson's score, which assumes independent trials"
+              << (std::ranges::any_of(summaries, [](const AnswerSummary& s) { return s.meanInterval.has_value(); })
+                      ? ", means by a bootstrap over participants\n"
+                      : "\n");
     if (!leftOut.empty()) std::cout << leftOut << "\n";
     for (const AnswerSummary& s : summaries) printText(s);
 }

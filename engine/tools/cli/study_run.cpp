@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/core/shown_text.h"
 #include "engine/session/hand_path.h"
@@ -132,8 +133,8 @@ public:
             say("That was the last trial. Thank you.\n");
         } catch (const Paused&) {
             paused = true;
-            say("\nPaused after " + std::to_string(table_->rows().size()) + " of " + std::to_string(trials_.size()) +
-                " trials; run the same command to resume.\n");
+            say("\nPaused after " + std::to_string(table_->rows().size()) + " of " + counted(trials_.size(), "trial") +
+                "; run the same command to resume.\n");
         } catch (...) {
             tellUnfelt();
             tellWarnings();
@@ -141,7 +142,10 @@ public:
         }
         tellUnfelt();
         tellWarnings();
-        return {table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv", warnings_};
+        StudyProgress went{table_->rows().size(), trials_.size(), paused, folder_ / "trials.csv", warnings_, {}};
+        for (const TrialRow& row : table_->rows())
+            if (!row.wasFelt()) went.unfelt.push_back(row.trial);
+        return went;
     }
 
 private:
@@ -228,7 +232,7 @@ void Sitting::agree()
             demandSame("--hand", before.hand, now.hand, withoutPort);
         else if (*before.path != *now.path)
             throw Error(path.string() + ": expected the path of a hand that this participant began with, found that " +
-                        shownText(*now.hand, kMostOfPath) +
+                        shownPath(*now.hand) +
                         " has another one, or has changed since; trials could not be compared; choose another --out");
         demandSame("--clock", before.clock, now.clock, std::identity());
         return;
@@ -358,6 +362,7 @@ std::string Sitting::touch(std::size_t condition, const std::string& name, Force
     const SessionRun session = runSession(plan_.conditions[condition].scene, felt_[condition].loaded, options,
                                           [&](const TickRecord& record) { force.add(record); });
     keepWarnings(session.warnings);
+    if (!session.takeover.empty()) keepWarnings({session.takeover});
     if (session.interrupted) throw Paused();
     if (!session.takeover.empty()) std::cerr << "palpate: " << session.takeover << "\n";
     try {

@@ -1,6 +1,9 @@
 #pragma once
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "engine/tools/cli/session_run.h"
 #include "engine/tools/study/study_order.h"
@@ -18,10 +21,11 @@ struct StudyRun {
 
 /// How far a run went.
 struct StudyProgress {
-    std::size_t              done = 0, trials = 0; ///< numbers of trials
-    bool                     paused = false;
-    std::filesystem::path    table;
-    std::vector<std::string> warnings{}; ///< of this run's sessions, each with its trial: for who runs the study
+    std::size_t                done = 0, trials = 0; ///< numbers of trials
+    bool                       paused = false;
+    std::filesystem::path      table;
+    std::vector<std::string>   warnings{}; ///< of this run's sessions, each with its trial: for who runs the study
+    std::vector<std::uint64_t> unfelt{};   ///< trials, from 1, of which a touch was not felt
 };
 
 /// Continues where the participant's table ends: touches, asks at the keyboard and appends a row, until the last trial

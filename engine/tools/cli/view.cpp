@@ -12,6 +12,7 @@
 #include "device/mouse_device.h"
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/quantity.h"
 #include "engine/session/interrupt.h"
 #include "engine/session/marker_input.h"
@@ -89,8 +90,8 @@ void tellStreams(const std::vector<std::unique_ptr<TickStream>>& streams, bool j
 {
     for (const auto& stream : streams) {
         const StreamReport report = stream->finish();
-        (json ? std::cerr : std::cout) << report.sent << " ticks sent to " << report.to << ", " << report.dropped
-                                       << " dropped\n";
+        (json ? std::cerr : std::cout) << counted(report.sent, "tick") << " sent to " << report.to << ", "
+                                       << report.dropped << " dropped\n";
     }
 }
 

@@ -13,6 +13,7 @@
 #include "engine/pipeline/presets.h"
 #include "engine/session/device_registry.h"
 #include "engine/session/hand_path.h"
+#include "engine/session/session_hand.h"
 #include "engine/tools/study/hunt_scene.h"
 
 namespace palp::study {
@@ -205,7 +206,11 @@ StudyPlan parsePlan(std::string_view text, const std::string& name, const std::f
     if (file.has("seconds")) plan.seconds = file.positiveNumber("seconds");
     if (!(plan.seconds >= kLeastSeconds && plan.seconds <= kMostSeconds))
         file.refuse("seconds", "a time from 1.5 s, which a force needs to come on, to 3600 s");
-    if (file.has("hand")) plan.hand = handIn(folder, textOf(file, "hand"));
+    if (file.has("hand")) {
+        plan.hand = textOf(file, "hand");
+        demandKnown(plan.hand, name + ": key \"hand\":", folder);
+        plan.hand = handIn(folder, plan.hand);
+    }
     if (file.has("repetitions")) plan.repetitions = file.wholeNumber("repetitions", 1, kMostRepetitions);
     for (const JsonObject& one : objectsIn(file, "conditions", "condition", kMostConditions)) {
         Condition condition = conditionOf(one, folder);

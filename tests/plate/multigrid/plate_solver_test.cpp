@@ -323,9 +323,8 @@ TEST(PlateSolver, FootprintsHaveTheBitsOfTheHostWhereTheyAreAskedFor)
     }
 }
 
-/// As many as the table of a moving contact has, on every processor and by the reference alone.
 /// Each to the bit: maps of felt stiffness hand places to as many solvers as there are cores.
-TEST(PlateSolver, APlatesAnswerDoesNotDependOnThosesBefore)
+TEST(PlateSolver, APlatesAnswerDoesNotDependOnThoseBefore)
 {
     const NodeField load = pointLoad(plateOf(32, 1).grid, 1, 0.5, 0.5);
     const auto alone = [&](const Plate& plate) { return PlateSolver("host").solve(plate, load).deflection.values(); };
@@ -337,8 +336,12 @@ TEST(PlateSolver, APlatesAnswerDoesNotDependOnThosesBefore)
     PlateSolver one("host");
     for (const Plate* plate : {&soft, &stiff, &soft, &rock, &jelly, &stiff})
         EXPECT_EQ(one.solve(*plate, load).deflection.values(), alone(*plate));
+    const Plate wide = plateOf(32, 1e-14); // within 32 bits, but not in the unit of a plate a hundred times as stiff
+    static_cast<void>(one.solve(plateOf(32, 100), load));
+    EXPECT_EQ(one.solve(wide, load).deflection.values(), alone(wide));
 }
 
+/// As many as the table of a moving contact has, on every processor and by the reference alone.
 TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
 {
     for (const std::string& name : {processorOfTests(), std::string(PlateSolver::kReference)}) {

@@ -45,8 +45,11 @@ std::string textOf(const BenchReport& report)
 TEST(BenchReport, TheClockOfAGpuIsSaidToBeTheWalls)
 {
     BenchReport report = reportOf(goodRow());
+    const auto  inJson = [&] { return nlohmann::json::parse(jsonOf(report)).at("clock"); };
     EXPECT_NE(textOf(report).find("in ms of processor time, one thread each"), std::string::npos);
+    EXPECT_EQ(inJson(), "processor");
     report.clock = Clock::wall;
+    EXPECT_EQ(inJson(), "wall");
     EXPECT_NE(textOf(report).find("in ms of time on the wall for Palpate"), std::string::npos) << textOf(report);
 }
 

@@ -143,6 +143,8 @@ good 'analysed' study --analyse study --plot shares.svg --json
 for word in '"participants": 2' '"trials": 6' '"left_out": 0' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
 good 'in words' study --analyse study
 holds 'predicted, not measured'
+holds 'means by a bootstrap'
+bad 'a folder twice' 'study/P01: expected each folder once' study --analyse study study/P01
 grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'
 sed 's/4e5/5e5/' plan.json >changed.json
 bad 'the plan has changed' 'has changed since' study changed.json --participant P01 --out study --clock virtual
@@ -177,7 +179,7 @@ printf '\n3\nq\n' >input
 good 'a hand in the air' study plan.json --participant P05 --out air --clock virtual --hand air.csv
 grep -q 'trial 1: nothing was felt' err.txt && pass || complain "nobody says that nothing was felt: $(cat err.txt)"
 : >input
-bad 'nothing that was felt' '1 trial left out, because nothing was felt' study --analyse air
+bad 'nothing that was felt' 'expected trials that were felt, found none; 1 trial left out, because nothing was felt' study --analyse air
 bad 'a folder of an order' '--out has no effect with --order' study plan.json --participant P01 --order --out study
 bad 'a clock of an analysis' '--clock has no effect with --analyse' study --analyse study --clock virtual
 bad 'a long name' 'at most 64 characters, found 101' study plan.json --participant "$(printf '%100s' | tr ' ' P)1" --out study
@@ -191,7 +193,8 @@ cat >plans/pair.json <<'JSON'
  "tasks": [{"name": "p", "kind": "two-alternative", "question": "Which?", "pairs": [["HERE", "BELOW"]]}, {"name": "r", "kind": "rating", "statement": "It felt real."}]}
 JSON
 printf '\n\n1\n\n4\n\n4\n' >input
-good 'a pair of which one is not felt' study plans/pair.json --participant P01 --out pairs --clock virtual
+good 'a pair of which one is not felt' study plans/pair.json --participant P01 --out pairs --clock virtual --json
+tr -d ' \n' <out.txt | grep -q '"unfelt":\[1,[23]\]' && pass || complain "JSON does not say which trials were not felt: $(cat out.txt)"
 grep -q 'trial 1: nothing was felt in one of its touches' err.txt && pass || complain "nobody says that one was not felt: $(cat err.txt)"
 : >input
 [ "$(sed -n 's/.*,//; 2p' pairs/P01/trials.csv)" = 0 ] && pass || complain "the table: $(cat pairs/P01/trials.csv)"
@@ -199,6 +202,7 @@ good 'what was not felt is left out' study --analyse pairs --json
 for word in '"trials": 1' '"left_out": 2'; do holds "$word"; done
 good 'which is said' study --analyse pairs
 holds '2 trials left out'
+grep -q bootstrap out.txt && complain 'an interval that there is not' || pass
 (cd plans && "$palpate" study pair.json --participant P01 --out ../pairs --clock virtual >../out.txt 2>../err.txt) && pass || complain "from another folder: $(cat err.txt)"
 holds '3 of 3 trials'
 cp -r pairs older && sed -i '/"hand_path"/d' older/P01/study.json

@@ -72,9 +72,11 @@ awk -v OFS=, 'BEGIN { print "probe,depth [mm],force,x,y,z"
     for (p = 0; p < 9; ++p) for (n = 0; n < 10; ++n) print p, n / 4, 300 * (exp(0.2 * n) - 1) / 800, p % 3 / 50, int(p / 3) / 50, 0 }' >probes.csv
 good 'presses' fit probes.csv --page probes.html --out felt.csv
 holds '"stiffening": 800, "relaxation": "none"' && holds 'K' && holds 'cubic'
+holds 'written     felt.csv' && holds 'written     probes.html'
 grep -q '<svg' probes.html && passed=$((passed + 1)) || complain 'the page of presses has no plot'
 good 'presses for scripts' fit probes.csv --json
-holds '"interval_from": "covariance"' && holds '"other_residuals"'
+holds '"interval_from": "covariance"' && holds '"other_residuals"' && holds '"written": null'
+bad 'places of presses' '--places has no effect on presses' fit probes.csv --places 20
 good 'the map of presses' info felt.csv
 holds '300 N/m' && holds 'felt stiffness [N/m]'
 good 'a map' fit felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --page map.html --out fitted.ply
@@ -113,6 +115,7 @@ holds '"points": 5000'
 holds '"for_touch": ['
 holds '"border_points"'
 good 'ascii, millimetres, a named property' convert skin.ply skin.csv
+bad 'an encoding of a text file' '--encoding has no effect on text files, found encoded.csv' convert skin.ply encoded.csv --encoding ascii
 good 'touch a sample' touch sample:ellipsoid --points 8000 --cells 32 --out 'a folder' --json
 holds '"felt_stiffness"'
 for file in deformed.ply touch.json rigidity.npy deflection.npy rigidity.svg deflection.svg profile.svg surface.svg close_up.svg; do
@@ -329,9 +332,13 @@ env LD_LIBRARY_PATH="$place" "$palpate" run scene.json --stream lsl --record unm
 [ $? -eq 2 ] && grep -q 'needs no library' err.txt && [ ! -e unmade ] && passed=$((passed + 1)) || complain "a library that is not there: $(cat err.txt)"
 good 'a stream' run scene.json --clock virtual --seconds 0.2 --stream udp:127.0.0.1:9 --stream udp:127.0.0.1:9 --json
 holds '"to": "udp:127.0.0.1:9"'
+good 'a session of one tick' run scene.json --clock virtual --seconds 0.001
+holds '1 tick, 0 in contact'
 good 'replay on lavapipe' replay session --compare --solver lavapipe
-good 'the configuration' run scene.json --print-config --max-force '4 N'
+good 'the configuration' run scene.json --print-config --max-force '4 N' --flat
 holds '4 '
+good 'the same for scripts' run scene.json --print-config --json
+bad 'a hand of the configuration' '--hand has no effect with --print-config' run scene.json --print-config --hand press
 bad 'a session is not overwritten' session run scene.json --clock virtual --seconds 0.1 --record session
 printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >wrong.json
 "$palpate" run scene.json --solver gpu9000 --record unmade >out.txt 2>err.txt

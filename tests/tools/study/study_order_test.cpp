@@ -213,17 +213,20 @@ TEST(StudyPlan, TheFileOfAHandIsLookedForFromThePlan)
 {
     const TemporaryFolder folder;
     static_cast<void>(folder.write("s.json", R"({"cloud": "sample:sheet"})"));
-    const auto handOf = [&](const std::string& hand) {
+    const std::filesystem::path there  = folder.write("hand.csv", "");
+    const auto                  handOf = [&](const std::string& hand) {
         return parsePlan(R"({"title": "t", "hand": ")" + hand + R"(", "conditions": [{"name": "a", "scene": "s.json"}],
             "tasks": [)" + kRating +
-                             "]}",
-                         "plan.json", folder.path())
+                                              "]}",
+                                          "plan.json", folder.path())
             .hand;
     };
     EXPECT_EQ(handOf("hand.csv"), folder / "hand.csv");
-    EXPECT_EQ(handOf("/there/hand.csv"), "/there/hand.csv");
+    EXPECT_EQ(handOf(there.string()), there);
     EXPECT_EQ(handOf("press"), "press");
     EXPECT_EQ(handOf("falcon"), "falcon");
+    EXPECT_TRUE(holds(refusalOf([&] { (void)handOf("pres"); }),
+                      {"plan.json: key \"hand\": pres: there is no such hand or file; did you mean press?", "scan"}));
 }
 
 TEST(StudyPlan, PairsMayBeInBothOrdersWhereNoAnswerIsRight)
