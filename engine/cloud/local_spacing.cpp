@@ -7,6 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include <glm/geometric.hpp>
+
+#include "engine/cloud/detail/local_shape.h"
 #include "engine/cloud/neighbourhoods.h"
 #include "engine/core/contract.h"
 
@@ -29,17 +32,28 @@ constexpr std::size_t kSharing = 8;
 constexpr double      kLike    = 1.6;
 
 /// A point this many times further from its neighbours than they are among themselves [1] is a stray, or belongs to the
-/// sparse side of a step in density; a random sheet has none, also at its corners. Then the area decides and not the
-/// number of points: a stray takes the others' spacing, as all the area around is theirs.
+/// sparse side of a step in density; a random sheet has none, also at its corners. A stray takes the others' spacing, or
+/// its ball would reach them and hold every hand; on a sparse side the area decides and not the number of points.
 constexpr double kAlone = 3;
 
-/// Share of the disc around such a point that the others' areas cover if it is a stray over a sheet [1]: 0.8, wherever
-/// it is. Just outside a dense half of a sheet it is 0.4.
+/// Share of the disc around such a point that the others' areas cover if it lies among them [1]. Just outside a dense
+/// half of a sheet it is 0.4.
 constexpr double kCovered = 0.6;
 
-/// A stray far from everything is known by its company [1]: of the points around the sparse side of a step, ten and more
-/// are as far from their neighbours. It takes the others' spacing too, or its ball would reach them and hold every hand.
-constexpr std::ptrdiff_t kFewStrays = 3;
+/// As many points or fewer that are about as far from their neighbours make no surface [1].
+constexpr std::size_t kFewStrays = 3;
+constexpr double      kCompany   = 2.5; ///< they are at least this part as far from their neighbours [1]
+
+/// As many or fewer may lie in a plane by chance [1]. They are a surface if the dense points beside them lie in it too: those
+/// of a narrow sparse strip do.
+constexpr std::size_t kByChance = 9;
+
+/// Points are strays if they deviate from the best plane by more than this [their spacings]: they lie in the air every way.
+/// The second one holds where no dense side is near, so that all of a rough surface would be lost.
+constexpr double kScatter = 0.15, kSureScatter = 0.5;
+
+/// They are a surface after all if it goes on: this share of them stands among its like and scatters less [1].
+constexpr double kGoesOn = 0.1;
 
 /// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay above zero.
 constexpr double kLeast = 0.05;
@@ -111,34 +125,90 @@ private:
     Neighbourhoods        neighbourhoods_;
 };
 
-/// Settles the spacing around the points of a run by the median of the guesses near them.
+/// Tells strays from the points of a surface.
+class StrayTest {
+public:
+    StrayTest(const NeighbourIndex& index, std::span<const double> guess)
+        : positions_(index.positionsByRank()), guess_(guess)
+    {
+    }
+
+    /// Takes the points `near` a point, by rank.
+    void take(std::uint32_t point, std::span<const std::uint32_t> near)
+    {
+        mine_ = guess_[point];
+        like_.clear();
+        for (const std::uint32_t other : near)
+            if (kCompany * guess_[other] > mine_) like_.push_back(other);
+        away_.clear();
+        for (const std::uint32_t other : like_.size() <= kByChance ? near : like_)
+            away_.push_back(positions_[other] - positions_[point]);
+    }
+    /// Returns those that are about as far from their neighbours as the point, or further, by rank.
+    [[nodiscard]] std::span<const std::uint32_t> like() const { return like_; }
+
+    /// Returns whether those make no surface: they are few, or scatter by more than that [their spacings].
+    [[nodiscard]] bool scatter(double most)
+    {
+        if (like_.size() <= kFewStrays) return true;
+        const LocalShape shape    = fitter_.fit(away_, kMedianReach * mine_, mine_);
+        const bool       byChance = like_.size() <= kByChance;
+        if (shape.sided && !byChance) return false;
+        double sum = 0, square = 0;
+        for (const glm::dvec3& away : away_) {
+            const double height = glm::dot(shape.normal, away);
+            sum += height;
+            square += height * height;
+        }
+        constexpr double kUnknowns = 3;
+        const auto       count     = double(away_.size());
+        const double     variance  = (square - sum * sum / count) / (count - kUnknowns);
+        const double     raised    = byChance ? std::abs(sum / count) : 0; // of the point itself [m]
+        return std::max(raised, std::sqrt(std::max(0.0, variance))) > most * mine_;
+    }
+
+private:
+    std::span<const glm::dvec3> positions_; ///< [m] all by rank
+    std::span<const double>     guess_;     ///< [m]
+    double                      mine_ = 0;  ///< [m] guess of the point
+    std::vector<std::uint32_t>  like_;
+    std::vector<glm::dvec3>     away_; ///< [m]
+    ShapeFitter                 fitter_;
+};
+
+/// Settles the spacing around the points of a run by the median of the guesses near them; negative where the point is
+/// alone, which remains to be settled.
 class SettlingSpacings {
 public:
     SettlingSpacings(const NeighbourIndex& index, std::span<const double> guess, std::span<double> spacings)
-        : index_(index), positions_(index.positionsByRank()), guess_(guess), spacings_(spacings)
+        : index_(index), positions_(index.positionsByRank()), guess_(guess), spacings_(spacings), strays_(index, guess)
     {
     }
 
     void operator()(const RankRun& run)
     {
         for (std::uint32_t first = run.begin, end = 0; first < run.end; first = end) {
+            end               = first + 1;
             const double mine = guess_[first];
             index_.gatherRanks(positions_[first], kMedianReach * mine, near_);
             values_.clear();
             for (const std::uint32_t other : near_) values_.push_back(guess_[other]);
             spacings_[first] = median(values_);
-            const bool alone = mine > kAlone * spacings_[first];
-            if (alone && !isStray(mine)) spacings_[first] = std::min(mine, medianOfArea(values_, kMedianReach * mine));
-            for (end = first + 1; end < run.end && end - first < kSharing && !alone && shares(first, end); ++end)
-                spacings_[end] = spacings_[first];
+            if (mine > kAlone * spacings_[first] || (mine > kAlone * index_.spacing() && isStray(first))) {
+                spacings_[first] = -spacings_[first];
+            } else {
+                for (; end < run.end && end - first < kSharing && shares(first, end); ++end)
+                    spacings_[end] = spacings_[first];
+            }
         }
     }
 
 private:
-    /// Returns whether hardly any other of the points in values_ is as far from its neighbours.
-    [[nodiscard]] bool isStray(double mine) const
+    /// Returns whether a point far from all that is dense is one of many strays.
+    [[nodiscard]] bool isStray(std::uint32_t point)
     {
-        return std::ranges::count_if(values_, [&](double its) { return kAlone * its > mine; }) <= kFewStrays;
+        strays_.take(point, near_);
+        return strays_.scatter(kSureScatter);
     }
     [[nodiscard]] bool shares(std::uint32_t first, std::uint32_t other) const
     {
@@ -151,8 +221,49 @@ private:
     std::span<const glm::dvec3> positions_; ///< [m] all by rank
     std::span<const double>     guess_;     ///< [m]
     std::span<double>           spacings_;  ///< [m]
+    StrayTest                   strays_;
     std::vector<std::uint32_t>  near_;
     std::vector<double>         values_; ///< [m]
+};
+
+/// Settles the spacing around the points of a run that are alone.
+class SettlingLonely {
+public:
+    /// \param settled   [m] as SettlingSpacings left it
+    SettlingLonely(const NeighbourIndex& index, std::span<const double> guess, std::span<const double> settled,
+                   std::span<double> spacings)
+        : index_(index), guess_(guess), settled_(settled), spacings_(spacings), strays_(index, guess)
+    {
+    }
+
+    void operator()(const RankRun& run)
+    {
+        for (std::uint32_t point = run.begin; point < run.end; ++point) {
+            if (settled_[point] > 0) continue;
+            const double mine = guess_[point];
+            index_.gatherRanks(index_.positionsByRank()[point], kMedianReach * mine, near_);
+            strays_.take(point, near_);
+            const auto like = strays_.like();
+            const auto good =
+                std::ranges::count_if(like, [&](std::uint32_t other) { return kLike * settled_[other] > mine; });
+            if (double(good) < kGoesOn * double(like.size()) && strays_.scatter(kScatter)) {
+                spacings_[point] = std::min(-settled_[point], index_.spacing());
+                continue;
+            }
+            values_.clear();
+            for (const std::uint32_t other : near_) values_.push_back(guess_[other]);
+            spacings_[point] = std::min(mine, medianOfArea(values_, kMedianReach * mine));
+        }
+    }
+
+private:
+    const NeighbourIndex&      index_;
+    std::span<const double>    guess_;    ///< [m]
+    std::span<const double>    settled_;  ///< [m]
+    std::span<double>          spacings_; ///< [m]
+    StrayTest                  strays_;
+    std::vector<std::uint32_t> near_;
+    std::vector<double>        values_; ///< [m]
 };
 
 } // namespace
@@ -165,6 +276,8 @@ std::vector<double> localSpacingsByRank(const NeighbourIndex& index)
     std::vector<double> guess(index.size()), spacings(index.size());
     inCurveRuns(index.size(), [&] { return GuessingSpacings(index, guess); });
     inCurveRuns(index.size(), [&] { return SettlingSpacings(index, guess, spacings); });
+    const std::vector<double> settled = spacings;
+    inCurveRuns(index.size(), [&] { return SettlingLonely(index, guess, settled, spacings); });
     return spacings;
 }
 

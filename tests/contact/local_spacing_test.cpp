@@ -79,6 +79,52 @@ TEST(LocalSpacing, StraysFarFromEverythingHaveTheOthersSpacing)
     EXPECT_LT(*std::max_element(spacings.begin(), spacings.end()), 2) << "one at 900 had 700, and held every hand";
 }
 
+/// Returns the coarse points, `ratio` apart, whose spacing is less than a third of that.
+int takenForStrays(const Points& fine, const Points& coarse, double ratio)
+{
+    Points points = fine;
+    append(points, coarse);
+    const std::vector<double> spacings = spacingsOf(points);
+    return int(std::count_if(spacings.begin() + std::ptrdiff_t(fine.size()), spacings.end(),
+                             [=](double s) { return 3 * s < ratio; }));
+}
+
+Points scaled(Points points, double by)
+{
+    for (glm::dvec3& p : points) p *= by;
+    return points;
+}
+
+/// A few points beside a step lie where the dense side has most of the area, and the balls of the next ones reach over
+/// them: as many as before there were strays to tell, and a fifth more at most.
+TEST(LocalSpacing, WhatIsCoarseOnPurposeIsNoStray)
+{
+    for (const Layout layout : {Layout::lattice, Layout::random})
+        for (const double ratio : {4.0, 10.0}) {
+            SCOPED_TRACE("1:" + std::to_string(ratio));
+            Sheet        sheet(layout, 7);
+            const Points fine   = sheet.whole();
+            const auto   lost   = [&](const Points& coarse) { return takenForStrays(fine, coarse, ratio); };
+            const Points beside = scaled(sheet.over(kHalf / ratio, kHalf / ratio + 8, -8, 8), ratio); // 128 points
+            EXPECT_LE(lost(beside), 18);
+            Points rough = beside;
+            addNoise(rough, 0.3 * ratio, sheet.random());
+            EXPECT_LE(lost(rough), 22);
+            Points thin = beside;
+            append(thin, beside, {0.3, 0.2, -1.5 * ratio});
+            EXPECT_LE(lost(thin), 24) << "two sheets";
+            Points wall; // at a right angle, as a coarse side of a box
+            for (const glm::dvec3& p : sheet.over(-8, 8, 0.2, 12))
+                wall.push_back(ratio * glm::dvec3(0, p.x, -p.y) + glm::dvec3(kHalf, 0, 0));
+            EXPECT_LE(lost(wall), 25) << "of 192";
+            for (const double radius : {3.0, 5.0}) {
+                Points round;
+                append(round, scaled(ball(layout, radius, 3.2, 5), ratio), {60 + 2 * radius * ratio, 0, 0});
+                EXPECT_LE(lost(round), 1) << "a ball of radius " << radius;
+            }
+        }
+}
+
 TEST(LocalSpacing, NeedsASurface)
 {
     EXPECT_THROW((void)spacingsOf(Points(100, glm::dvec3(1, 2, 3))), Error);

@@ -57,5 +57,52 @@ TEST(ProxyStrays, StraysNeitherHoldTheHandNorHideTheSurface)
         }
 }
 
+/// A sheet with strays anywhere 3 to 30 above it, and presses at random places and at the first ten strays.
+Presses pressesBelowStrays(Layout layout, std::uint64_t seed, double strayShare)
+{
+    Sheet                            sheet(layout, kFirstSeed + seed);
+    Points                           points = sheet.whole(), strays;
+    std::mt19937_64                  random(seed);
+    std::uniform_real_distribution<> along(-35, 35), up(3, 30);
+    const auto                       count = std::size_t(strayShare * double(points.size()));
+    while (strays.size() < count) {
+        const double x = along(random), y = along(random);
+        strays.emplace_back(x, y, up(random));
+    }
+    append(points, strays);
+    strays.resize(std::min<std::size_t>(10, strays.size()));
+    Touch touch(points);
+    return presses(touch, strays, 4);
+}
+
+TEST(ProxyStrays, ThreeInAThousandHideNothing)
+{
+    for (const double share : {0.001, 0.003})
+        for (const Layout layout : {Layout::lattice, Layout::random})
+            for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+                SCOPED_TRACE(std::to_string(share) + ", seed " + std::to_string(seed));
+                const Presses found = pressesBelowStrays(layout, seed, share);
+                EXPECT_EQ(found.missed, 0) << "where one in a thousand made planes in the air it was up to 34 of 40";
+                EXPECT_LE(found.inTheAir, 1);
+                EXPECT_EQ(found.kept, 0);
+            }
+}
+
+TEST(ProxyStrays, ThirtyInAThousandHideLittle)
+{
+    for (const double share : {0.01, 0.03}) {
+        Presses all;
+        for (const Layout layout : {Layout::lattice, Layout::random})
+            for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+                const Presses found = pressesBelowStrays(layout, seed, share);
+                all.count += found.count;
+                all.missed += found.missed;
+                all.inTheAir += found.inTheAir;
+            }
+        EXPECT_LE(double(all.missed), 0.1 * all.count) << "all of them before strays were told by how they scatter";
+        EXPECT_LE(double(all.inTheAir), 0.15 * all.count);
+    }
+}
+
 } // namespace
 } // namespace palp

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include <glm/geometric.hpp>
+
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
 #include "engine/core/file.h"
