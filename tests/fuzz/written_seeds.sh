@@ -10,11 +10,11 @@ cd "$work"
 export XDG_CONFIG_HOME="$work" PALPATE_SOLVER=host
 run() { "$palpate" "$@" >out.txt 2>err.txt </dev/null || { cat err.txt; exit 1; }; }
 
-for kind in ply:binary ply:binary-big-endian ply:ascii pcd:binary pcd:ascii csv:binary xyz:binary; do
+for kind in ply:binary ply:binary-big-endian ply:ascii pcd:binary pcd:ascii csv: xyz:; do
     format=${kind%:*} encoding=${kind#*:}
-    run convert sample:ear-lobe --points 20 "cloud.$format" --encoding "$encoding"
+    run convert sample:ear-lobe --points 20 "cloud.$format" ${encoding:+--encoding "$encoding"}
     case $format in csv | xyz) folder=text ;; *) folder=$format ;; esac
-    cp "cloud.$format" "$seeds/$folder/written-$encoding-$format"
+    cp "cloud.$format" "$seeds/$folder/written-${encoding:-text}-$format"
 done
 
 cat >plate.json <<'JSON'
