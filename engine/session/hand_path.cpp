@@ -19,6 +19,7 @@
 #include "engine/core/npy.h"
 #include "engine/core/quantity.h"
 #include "engine/core/shown_text.h"
+#include "engine/session/scene_place.h"
 
 namespace palp {
 namespace {
@@ -422,36 +423,6 @@ std::string fingerprint(const HandPath& hand)
         for (int k = 0; k < 4; ++k) print.add(w.orientation[k]);
     }
     return print.text();
-}
-
-namespace {
-
-/// Returns the point of the largest z; of a flat top the one in its middle. There the largest z is noise, or all points
-/// have it, and the first may lie in a corner.
-glm::dvec3 highestOf(const PointCloud& cloud)
-{
-    constexpr double kFlat = 0.9; // of the cloud's width, both ways, is within a spacing of the largest z [1]
-    const glm::dvec3 highest =
-        *std::ranges::max_element(cloud.positions(), {}, [](const glm::dvec3& p) { return p.z; });
-    const glm::dvec3 width = cloud.bounds().high - cloud.bounds().low, middle = cloud.bounds().centre();
-    const double     spacing = std::sqrt(width.x * width.y / double(cloud.size())); // [m] of a flat cloud
-    const auto       aside   = [&](const glm::dvec3& p) { return glm::length(glm::dvec2(p) - glm::dvec2(middle)); };
-    glm::dvec3       low = highest, high = highest, inside = highest;
-    for (const glm::dvec3& p : cloud.positions()) {
-        if (p.z < highest.z - spacing) continue;
-        low  = glm::min(low, p);
-        high = glm::max(high, p);
-        if (aside(p) < aside(inside)) inside = p;
-    }
-    const bool isFlat = high.x - low.x >= kFlat * width.x && high.y - low.y >= kFlat * width.y;
-    return isFlat ? inside : highest;
-}
-
-} // namespace
-
-glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud)
-{
-    return scene.place ? *scene.place : highestOf(cloud);
 }
 
 Contact contactOf(const Scene& scene, const SoftObject& object)

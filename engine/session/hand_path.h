@@ -96,10 +96,6 @@ struct HandPlace {
     glm::dvec3 outward{0, 0, 1}; ///< [1] unit vector to the hand
 };
 
-/// Returns Scene::place, or the point of the cloud nearest to a viewer who looks along -z: the highest, and of
-/// a flat top, nine tenths as wide as the cloud both ways at least, the one in the middle.
-[[nodiscard]] glm::dvec3 placeOf(const Scene& scene, const PointCloud& cloud);
-
 /// Returns where the scene is touched: the foot of placeOf() on the surface, see touchAt(), and the side Scene::from;
 /// where the scene names no place, the viewer's side.
 /// \throws Error if the place is farther than a quarter of the patch window from the cloud

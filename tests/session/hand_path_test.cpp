@@ -1,4 +1,5 @@
 #include "engine/session/hand_path.h"
+#include "engine/session/scene_place.h"
 
 #include <algorithm>
 #include <cmath>
@@ -422,6 +423,16 @@ TEST(GeneratedHand, AFlatCloudIsTouchedInItsMiddleAndACurvedOneAtItsTop)
     EXPECT_LT(glm::length(placeOn(square(dome)) - glm::dvec3(top, 0)), 1e-9);
     const auto slope = [](const glm::dvec2& at) { return at.x + at.y; };
     EXPECT_EQ(placeOn(square(slope)).x, 0.1) << "the highest corner, as a slope has nothing flat";
+}
+
+TEST(GeneratedHand, StraysInTheAirAreNotTouched)
+{
+    const PointCloud        flat = square([](const glm::dvec2&) { return 0.0; });
+    std::vector<glm::dvec3> points(flat.positions().begin(), flat.positions().end());
+    for (const glm::dvec3& stray : {glm::dvec3(0.02, 0.03, 0.03), {0.06, 0.03, 0.02}, {0.05, 0.09, 0.012}})
+        points.push_back(stray);
+    const PointCloud cloud(points, std::vector<double>(points.size(), 1e5), StiffnessKind::modulus);
+    EXPECT_EQ(placeOf(Scene(), cloud), glm::dvec3(50e-3, 50e-3, 0)) << "a hand was sent to the highest stray";
 }
 
 TEST(GeneratedHand, ThePlaceOfASceneIsOnItsCloudOnTheHandsSide)

@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "engine/core/extremes.h"
-#include "engine/session/hand_path.h"
+#include "engine/session/scene_place.h"
 
 namespace palp {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "engine/core/contract.h"
-#include "engine/session/hand_path.h"
+#include "engine/session/scene_place.h"
 
 namespace palp::study {
 namespace {

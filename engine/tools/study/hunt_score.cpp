@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/core/contract.h"
-#include "engine/session/hand_path.h"
+#include "engine/session/scene_place.h"
 #include "engine/session/servo.h"
 
 namespace palp::study {
