@@ -42,7 +42,7 @@ constexpr double kCovered = 0.6;
 
 /// As many points or fewer that are about as far from their neighbours make no surface [1].
 constexpr std::size_t kFewStrays = 3;
-constexpr double      kCompany   = 2.5; ///< they are at least this part as far from their neighbours [1]
+constexpr double      kCompany   = 2.5; ///< they are at most this many times closer to their neighbours [1]
 
 /// As many or fewer may lie in a plane by chance [1]. They are a surface if the dense points beside them lie in it too: those
 /// of a narrow sparse strip do.

@@ -96,9 +96,10 @@ protected:
           device(GetParam().line(), GetParam().info(), {.pace = LinePace::caller})
     {
     }
-    void run(double seconds, const GovernedForce& force)
+    void run(double seconds, const GovernedForce& force, int exchangesEachTick = 1)
     {
-        for (const double end = now + seconds - kTick / 2; now < end; now += kTick) {
+        const double step = kTick / exchangesEachTick;
+        for (const double end = now + seconds - step / 2; now < end; now += step) {
             virtualTime = now;
             state       = device.exchange(force, now);
             if (force_() > 0) pushed = now;
@@ -339,24 +340,17 @@ TEST_P(ForceDimension, ItsPatienceIsOneInSeconds)
     for (const int eachTick : {1, 4}) {
         device.open();
         run(0.1, push);
-        const auto ticks = [&](int count) {
-            const double rest = now;
-            for (int n = 0; n < count * eachTick; ++n) {
-                virtualTime = now = rest + kTick * n / eachTick;
-                state             = device.exchange(push, now);
-            }
-        };
         sdk.status = 3;
-        ticks(45);
+        run(0.045, push, eachTick);
         EXPECT_EQ(state.fault, DeviceFault::ownWatchdog) << eachTick;
         EXPECT_EQ(sdk.status, 3) << "it rests for 50 ms in this test";
-        ticks(20);
+        run(0.020, push, eachTick);
         EXPECT_EQ(sdk.status, 0) << eachTick;
         run(0.1, push);
         sdk.error = 1;
-        ticks(50);
+        run(0.050, push, eachTick);
         EXPECT_NE(state.fault, DeviceFault::linkLost) << eachTick;
-        ticks(50);
+        run(0.050, push, eachTick);
         EXPECT_EQ(state.fault, DeviceFault::linkLost) << eachTick;
         sdk.error = 0;
         device.close();
@@ -554,17 +548,10 @@ TEST_P(OpenHaptics, ItsPatienceIsOneInSeconds)
     for (const int eachTick : {1, 4}) {
         device.open();
         run(0.1, push);
-        const auto ticks = [&](int count) {
-            const double rest = now;
-            for (int n = 0; n < count * eachTick; ++n) {
-                virtualTime = now = rest + kTick * n / eachTick;
-                state             = device.exchange(push, now);
-            }
-        };
         sdk.error = 0x200;
-        ticks(45);
+        run(0.045, push, eachTick);
         EXPECT_EQ(state.fault, DeviceFault::ownWatchdog) << eachTick << ": it rests for 50 ms in this test";
-        ticks(20);
+        run(0.020, push, eachTick);
         EXPECT_EQ(state.fault, DeviceFault::none) << eachTick;
         device.close();
     }
