@@ -351,6 +351,11 @@ TEST_F(PanelsClick, SectionsThatASmallWindowClosedComeBackWhenItGrows)
     EXPECT_LT(less, first);
     static_cast<void>(height(kSmall));
     EXPECT_EQ(height(kSize), less) << "what the user has closed stays closed";
+    state_.tool          = Tool::paint;
+    const float painting = height(kSize);
+    EXPECT_GT(painting, less + 50) << "its heading alone takes 21";
+    static_cast<void>(height(kSmall));
+    EXPECT_EQ(height(kSize), painting) << "the section of the brush, too";
 }
 
 TEST_F(PanelsClick, AWindowThatIsSmallAtFirstOpensItsSectionsWhenItGrows)
