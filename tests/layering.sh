@@ -53,6 +53,10 @@ strangers=$(grep -rnE '^ *# *include *"[^"]*/detail/' engine device samples --in
     awk -F'[:"]' '{ owner = $4; sub("/detail/.*", "/", owner); if (index($1, owner) != 1) print $1 " includes " $4 }')
 [ -z "$strangers" ] || complain "a folder detail/ is used from outside its folder: $strangers"
 
+# A header outside of detail/ may be installed, and one inside is not.
+hidden=$(grep -rnE '^ *# *include *"[^"]*/detail/' engine device --include='*.h' | grep -v '^[^:]*/detail/')
+[ -z "$hidden" ] || complain "a header that others include needs one of a folder detail/, which is not installed: $hidden"
+
 # The reference solver shares no code with the solver that it judges.
 shared=$(grep -rnE '^ *# *include *"(engine/plate/(multigrid|host)|engine/compute|compute_shaders)/' engine/plate/reference)
 [ -z "$shared" ] || complain "the reference solver shares code with the solver that it judges: $shared"

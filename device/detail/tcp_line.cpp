@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "device/detail/guardian.h"
-#include "device/detail/machine_time.h"
+#include "device/machine_time.h"
 
 namespace palp {
 namespace {

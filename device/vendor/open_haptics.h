@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "device/detail/machine_time.h"
+#include "device/machine_time.h"
 #include "device/device_record.h"
 #include "device/line_device.h"
 

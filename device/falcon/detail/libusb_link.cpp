@@ -12,10 +12,10 @@
 #include <unistd.h>
 
 #include "device/detail/guardian.h"
-#include "device/detail/machine_time.h"
 #include "device/falcon/detail/byte_ring.h"
 #include "device/falcon/detail/libusb_words.h"
 #include "device/falcon/detail/usb_node.h"
+#include "device/machine_time.h"
 #include "engine/core/contract.h"
 
 namespace palp {
