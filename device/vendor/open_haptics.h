@@ -3,9 +3,9 @@
 #include <memory>
 #include <string>
 
-#include "device/machine_time.h"
 #include "device/device_record.h"
 #include "device/line_device.h"
+#include "device/machine_time.h"
 
 namespace palp {
 
