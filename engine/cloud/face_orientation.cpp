@@ -1,6 +1,7 @@
 #include "engine/cloud/face_orientation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <utility>
@@ -69,6 +70,18 @@ private:
     std::vector<Edge>          edges_;
 };
 
+/// Returns whether each edge belongs to two triangles that face the same way.
+bool isClosed(std::span<const Triangle> faces, std::size_t points)
+{
+    std::size_t shared   = 0;
+    bool        allAlike = true;
+    SharedEdges(faces, points).each([&](std::uint32_t, std::uint32_t, bool alike) {
+        ++shared;
+        allAlike = allAlike && alike;
+    });
+    return allAlike && 2 * shared == 3 * faces.size();
+}
+
 double areaOf(const Triangle& face, std::span<const glm::dvec3> positions)
 {
     const glm::dvec3& corner = positions[face[0]];
@@ -125,6 +138,24 @@ std::size_t turnToNeighbours(std::span<Triangle> faces, std::span<const glm::dve
         }
     }
     return count;
+}
+
+bool turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3> positions)
+{
+    if (faces.empty()) return false;
+    // About a corner of its own, so that a body far from the origin loses no digits.
+    const glm::dvec3& middle = positions[faces[0][0]];
+    double            volume = 0, extent = 0; // six times what is enclosed, and the sum of its parts' sizes [m^3]
+    for (const Triangle& face : faces) {
+        const double part =
+            glm::dot(positions[face[0]] - middle, glm::cross(positions[face[1]] - middle, positions[face[2]] - middle));
+        volume += part;
+        extent += std::abs(part);
+    }
+    // What encloses nothing, as a sheet folded back on itself, has the sign of its rounding.
+    if (!(volume < -1e-9 * extent) || !isClosed(faces, positions.size())) return false;
+    for (Triangle& face : faces) std::swap(face[1], face[2]);
+    return true;
 }
 
 } // namespace palp

@@ -11,4 +11,11 @@ namespace palp {
     return std::to_string(number) + " " + what + (number == 1 ? "" : ending);
 }
 
+/// Returns "1 point lies", "2 points lie".
+[[nodiscard]] inline std::string counted(std::size_t number, const std::string& what, const char* ofOne,
+                                         const char* ofMore)
+{
+    return counted(number, what) + " " + (number == 1 ? ofOne : ofMore);
+}
+
 } // namespace palp

@@ -10,6 +10,7 @@
 
 #include "engine/cloud/mesh_points.h"
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/quantity.h"
 
 namespace palp {
@@ -123,8 +124,9 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
                                   " are made, and fewer where triangles are long and thin; is the object as large as "
                                   "this, or its length unit another one?");
     if (points.degenerate > 0)
-        report.warnings.push_back(std::to_string(points.degenerate) + " of " + std::to_string(loaded.faces.size()) +
-                                  " triangles have no area and hold no points");
+        report.warnings.push_back(
+            std::to_string(points.degenerate) + " of " + counted(loaded.faces.size(), "triangle") +
+            (points.degenerate == 1 ? " has" : " have") + " no area, so that no points lie there");
     loaded.normals.assign(points.normals.begin(), points.normals.end());
     const auto vertices = loaded.cloud.positions();
     loaded.mesh         = {{vertices.begin(), vertices.end()}, std::exchange(loaded.faces, {})};

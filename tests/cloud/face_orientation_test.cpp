@@ -126,10 +126,60 @@ TEST(FaceOrientation, ThreeFacesAtAnEdgeAndOneSidedStripsDoNoHarm)
     EXPECT_LE(turnToNeighbours(strip, places), strip.size() / 2);
 }
 
+TEST(FaceOrientation, AClosedBodyThatLiesInsideOutIsTurnedWhole)
+{
+    const auto inverted = [](std::vector<Triangle> faces) {
+        for (Triangle& face : faces) std::swap(face[1], face[2]);
+        return faces;
+    };
+    // Far from the origin, whose side of each triangle says nothing then; a plate a thousandth of its width thin.
+    test::Mesh plate = test::sharedCube(1);
+    for (glm::dvec3& p : plate.vertices) p = p * glm::dvec3(1, 1, 0.001) + glm::dvec3(500, -300, 200);
+    for (const test::Mesh& mesh : {ball(12, 1, {1e3, 0, 0}), plate}) {
+        std::vector<Triangle> faces = inverted(mesh.faces);
+        EXPECT_TRUE(turnOutward(faces, mesh.vertices));
+        EXPECT_EQ(faces, mesh.faces);
+        EXPECT_FALSE(turnOutward(faces, mesh.vertices)) << "it lies right now";
+        EXPECT_EQ(faces, mesh.faces);
+    }
+}
+
+/// A shell of two balls: the wall of its cavity faces into the cavity, also where the file has both the wrong way.
+TEST(FaceOrientation, TheWallOfACavityIsTurnedWithItsBodyOnly)
+{
+    test::Mesh       mesh  = ball(8, 2, {});
+    const test::Mesh inner = ball(8, 1, {});
+    const auto       shift = std::uint32_t(mesh.vertices.size());
+    for (const Triangle& face : inner.faces) mesh.faces.push_back({face[0] + shift, face[2] + shift, face[1] + shift});
+    mesh.vertices.insert(mesh.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+    std::vector<Triangle> faces = mesh.faces;
+    EXPECT_FALSE(turnOutward(faces, mesh.vertices));
+    for (Triangle& face : faces) std::swap(face[1], face[2]);
+    EXPECT_TRUE(turnOutward(faces, mesh.vertices));
+    EXPECT_EQ(faces, mesh.faces);
+}
+
+/// A dome, a ball that lacks one triangle, and a leaf of two sides that encloses nothing: which side is out, nobody says.
+TEST(FaceOrientation, WhatIsOpenOrEnclosesNothingKeepsItsBits)
+{
+    const test::Mesh      mesh  = ball(12, 1, {});
+    std::vector<Triangle> faces = mesh.faces;
+    for (Triangle& face : faces) std::swap(face[1], face[2]);
+    faces.pop_back();
+    const auto before = faces;
+    EXPECT_FALSE(turnOutward(faces, mesh.vertices));
+    EXPECT_EQ(faces, before);
+
+    const std::vector<glm::dvec3> corners{{0.1, 0.2, 0.3}, {1.7, 0.3, 0.1}, {0.2, 1.9, 0.7}};
+    std::vector<Triangle>         leaf{{0, 1, 2}, {0, 2, 1}};
+    EXPECT_FALSE(turnOutward(leaf, corners));
+}
+
 TEST(FaceOrientation, NoFacesAreNone)
 {
     std::vector<Triangle> none;
     EXPECT_EQ(turnToNeighbours(none, {}), 0u);
+    EXPECT_FALSE(turnOutward(none, {}));
 }
 
 } // namespace

@@ -386,7 +386,7 @@ TEST(Positions, BeyondAnythingThatAHandCanFeelAreRefused)
 TEST(Positions, ThatAllCoincideAreRefused)
 {
     EXPECT_TRUE(contains(textRefusal("1 2 3\n1 2 3\n1 2 3\n"), {"all 3 points coincide at (1, 2, 3) m"}));
-    EXPECT_TRUE(contains(textRefusal("1 2 3\n"), {"all 1 points coincide"}));
+    EXPECT_TRUE(contains(textRefusal("1 2 3\n"), {"its only point lies at (1, 2, 3) m"}));
     EXPECT_TRUE(contains(textRefusal("0 0 0\n-0 0 0\n"), {"all 2 points coincide"}));
     EXPECT_TRUE(contains(textRefusal("0 0 0\n0 1e-200 0\n"), {"all 2 points coincide"})) << "its square is zero";
 }

@@ -189,6 +189,49 @@ TEST_F(SceneMesh, BadMeshesAreTouchedWithTheForceOfGoodOnes)
     for (const auto& [what, text] : meshes) EXPECT_NEAR(forceOn(text) / good, 1, 0.02) << what;
 }
 
+/// Points scattered over it face outward; normals of the file, which its program made of the same triangles, too.
+TEST_F(SceneMesh, AClosedMeshThatLiesInsideOutIsTurned)
+{
+    const std::string corners = "v -40 -40 -40\nv 40 -40 -40\nv 40 40 -40\nv -40 40 -40\nv -40 -40 40\nv 40 -40 40\n"
+                                "v 40 40 40\nv -40 40 40\n";
+    const std::string inward  = "f 2 3 4 1\nf 8 7 6 5\nf 5 6 2 1\nf 6 7 3 2\nf 7 8 4 3\nf 8 5 1 4\n";
+    const auto        outward = [](const LoadedCloud& loaded, const char* sentence) {
+        EXPECT_EQ(loaded.normals.size(), loaded.cloud.size());
+        for (std::size_t i = 0; i < loaded.normals.size(); ++i)
+            ASSERT_GT(glm::dot(glm::dvec3(loaded.normals[i]), loaded.cloud.positions()[i]), 0);
+        EXPECT_TRUE(std::ranges::any_of(loaded.report.warnings, [&](const std::string& said) {
+            return said.find(sentence) != std::string::npos;
+        })) << sentence;
+    };
+    outward(loadCloud(sceneOf(
+                "", {{"cloud", folder_.write("inward.obj", corners + inward).string()}, {"length_unit", "mm"}})),
+            "lay inside out");
+
+    std::string ply = kCube;
+    ply.replace(ply.find("property float stiffness"), 24,
+                "property float stiffness\nproperty float nx\nproperty float ny\nproperty float nz");
+    const auto swap = [&ply](const std::string& from, const std::string& to) {
+        ply.replace(ply.find(from), from.size(), to);
+    };
+    for (int k = 0; k < 8; ++k) { // each corner's line, in the order of the file
+        static constexpr const char* kLines[] = {"-40 -40 -40 1e5\n", "40 -40 -40 1e6\n", "40 40 -40 1e6\n",
+                                                 "-40 40 -40 1e5\n",  "-40 -40 40 1e5\n", "40 -40 40 1e6\n",
+                                                 "40 40 40 1e6\n",    "-40 40 40 1e5\n"};
+        const std::string            line     = "\n" + std::string(kLines[k]);
+        std::string                  inwards;
+        for (const char* sign :
+             {k == 0 || k == 3 || k == 4 || k == 7 ? " 1" : " -1", k % 4 < 2 ? " 1" : " -1", k < 4 ? " 1" : " -1"})
+            inwards += sign;
+        swap(line, line.substr(0, line.size() - 1) + inwards + "\n");
+    }
+    for (const char* face : {"4 0 3 2 1", "4 4 5 6 7", "4 0 1 5 4", "4 1 2 6 5", "4 2 3 7 6", "4 3 0 4 7"}) {
+        std::string turned = face;
+        std::swap(turned[4], turned[8]);
+        swap(face, turned);
+    }
+    outward(loadCloud(sceneOf(ply, {{"scatter", "off"}})), "normals pointed inward with them");
+}
+
 /// Where one triangle is flipped, what lies beyond its edge is no other side: a stiff corner there is felt.
 TEST_F(SceneMesh, AFlippedTriangleHidesNoStiffness)
 {

@@ -44,6 +44,11 @@ std::string listed(const std::vector<std::string>& names)
     return text.empty() ? "none" : text;
 }
 
+std::string allOf(std::size_t points, const char* ofOne, const char* ofMore)
+{
+    return points == 1 ? std::string("its only point ") + ofOne : "all " + std::to_string(points) + " points " + ofMore;
+}
+
 std::string lookUpList()
 {
     std::string text;
@@ -409,8 +414,8 @@ void CloudRows::mergePlaces()
         if (!other.empty()) other.resize(count);
     if (!normals_.empty()) normals_.resize(count);
     places_ = std::move(places);
-    warn(std::to_string(report_.duplicatePositions) +
-         " points lie exactly where an earlier one lies and were merged with it");
+    warn(counted(report_.duplicatePositions, "point", "lies", "lie") +
+         " exactly where an earlier one lies; points at one place are merged");
 }
 
 std::vector<std::uint32_t> CloudRows::pointsOfRows() const
@@ -431,13 +436,13 @@ std::vector<std::uint32_t> CloudRows::pointsOfRows() const
 LoadedCloud CloudRows::finish()
 {
     if (positions_.empty())
-        reader_.fail(report_.droppedPoints ? "the cloud is empty: all " + std::to_string(report_.droppedPoints) +
-                                                 " points have NaN or infinity in a used property and were dropped"
+        reader_.fail(report_.droppedPoints ? "the cloud is empty: " + allOf(report_.droppedPoints, "has", "have") +
+                                                 " NaN or infinity in a used property; such points are dropped"
                                            : "the cloud is empty: expected at least one point, found none");
     const glm::dvec3& first = positions_.front(); // distances whose squares vanish are none
     if (std::all_of(positions_.begin(), positions_.end(),
                     [&](const glm::dvec3& p) { return glm::length(p - first) == 0; }))
-        reader_.fail("all " + std::to_string(positions_.size()) + " points coincide at (" + shown(first.x) + ", " +
+        reader_.fail(allOf(positions_.size(), "lies at", "coincide at") + " (" + shown(first.x) + ", " +
                      shown(first.y) + ", " + shown(first.z) + ") m: expected an object with an extent");
     if (columns_[kSlotStiffness]) {
         report_.stiffnessProperty = found_;
@@ -446,8 +451,8 @@ LoadedCloud CloudRows::finish()
         stiffness_.assign(positions_.size(), uniform_);
     }
     if (report_.droppedPoints > 0 && !settings_.dropInvalid)
-        warn(std::to_string(report_.droppedPoints) + " of " + std::to_string(rowsRead_) +
-             " points were omitted: they have NaN, with which such files mark what the instrument did not see");
+        warn("NaN, with which such files mark what the instrument did not see, stands in " +
+             std::to_string(report_.droppedPoints) + " of " + counted(rowsRead_, "point") + "; nothing is there");
     mergePlaces();
     if (std::ranges::all_of(normals_, [](const glm::vec3& n) { return n == glm::vec3(0); })) normals_.clear();
     const auto rangeOf = [](const std::vector<double>& values) -> std::optional<PropertyRange> {

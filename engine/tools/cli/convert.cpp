@@ -6,6 +6,7 @@
 
 #include "engine/cloud/cloud_format.h"
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/session/scene_mesh.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
@@ -54,7 +55,7 @@ void convert(const ConvertOptions& options)
     writeCloud(options.target, loaded.cloud, others.fields, {encoding, loaded.faces});
     std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
     if (!faces && !loaded.faces.empty())
-        warnings.push_back("the " + std::to_string(loaded.faces.size()) + " triangles were not written: only " +
+        warnings.push_back(counted(loaded.faces.size(), "triangle", "was", "were") + " not written: only " +
                            extensionsFor(CloudUse::writingFaces) + " files hold faces; name such a file to keep them");
     if (options.json) {
         nlohmann::json report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);

@@ -89,7 +89,7 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
     std::string       properties;
     for (const std::string& property : loaded.report.properties)
         properties += (properties.empty() ? "" : ", ") + property;
-    std::cout << options.source.name << ": " << loaded.report.format << ", " << loaded.cloud.size() << " points";
+    std::cout << options.source.name << ": " << loaded.report.format << ", " << counted(loaded.cloud.size(), "point");
     if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
     std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  size        "
               << sizeText(loaded.cloud.bounds()) << "\n  length unit " << loaded.report.lengthUnitSource << "\n";

@@ -11,6 +11,7 @@
 
 #include "engine/cloud/touch_scale.h"
 #include "engine/core/contract.h"
+#include "engine/core/counted.h"
 #include "engine/core/file.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/curvature_doubt.h"
@@ -214,7 +215,7 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
             " apart or less, on a small part of the area: the touch is fine there, and elsewhere as coarse as "
             "the points");
     if (q.strays > 0)
-        said.push_back((q.strays == 1 ? "1 point lies" : std::to_string(q.strays) + " points lie") +
+        said.push_back(counted(q.strays, "point", "lies", "lie") +
                        std::string(" far from all others: strays count in the extent, and little is felt there"));
     if (q.border > 0) said.push_back("at borders and holes the sheet goes on with the stiffness of the nearest points");
     if (q.sided < 0.995) said.push_back(onSides(r));
