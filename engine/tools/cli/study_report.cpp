@@ -26,12 +26,19 @@ using study::Interval;
 using study::Share;
 using Json = nlohmann::json;
 
+/// A participant who has answered fewer trials than the plan has.
+struct Unfinished {
+    std::string participant;
+    std::size_t answered = 0, planned = 0;
+};
+
 /// All answers of one study.
 struct Answers {
     std::vector<study::TrialRow> rows;
     study::Stiffnesses           stiffnesses;
     std::size_t                  participants = 0;
     std::size_t                  leftOut      = 0; ///< trials with a touch in which nothing was felt
+    std::vector<Unfinished>      unfinished;
 };
 
 std::vector<std::filesystem::path> participantsIn(const std::filesystem::path& folder)
@@ -68,7 +75,7 @@ Answers answersIn(const std::vector<std::string>& folders)
                             inQuotes(file.participant) + " again, who is also in " + before->second.string() +
                             "; analyse the folders one by one");
             plan                     = file.plan;
-            const std::size_t others = all.rows.size();
+            const std::size_t others = all.rows.size(), othersLeftOut = all.leftOut;
             for (study::TrialRow& row : study::readTrials(participant / "trials.csv")) {
                 if (row.participant != file.participant)
                     throw Error((participant / "trials.csv").string() + ": trial " + std::to_string(row.trial) +
@@ -81,6 +88,9 @@ Answers answersIn(const std::vector<std::string>& folders)
                     ++all.leftOut;
             }
             all.participants += all.rows.size() > others;
+            const std::size_t answered = all.rows.size() - others + all.leftOut - othersLeftOut;
+            if (const auto planned = study::trialsPlanned(file.plan); planned && answered < *planned)
+                all.unfinished.push_back({file.participant, answered, *planned});
             for (const auto& [condition, stiffness] : file.feltStiffness)
                 if (stiffness) all.stiffnesses[condition] = *stiffness;
         }
@@ -193,11 +203,14 @@ void analyseStudies(const std::vector<std::string>& folders, const std::filesyst
     const auto summaries = study::analyse(all.rows, all.stiffnesses);
     if (!plot.empty()) writeFileWhole(plot, [&](std::ostream& file) { file << study::analysisSvg(summaries); });
     if (json) {
-        Json list = Json::array();
+        Json list = Json::array(), unfinished = Json::array();
         for (const AnswerSummary& s : summaries) list.push_back(jsonOf(s));
+        for (const Unfinished& u : all.unfinished)
+            unfinished.push_back({{"participant", u.participant}, {"answered", u.answered}, {"planned", u.planned}});
         std::cout << jsonText(Json{{"participants", all.participants},
                                    {"trials", all.rows.size()},
                                    {"left_out", all.leftOut},
+                                   {"unfinished", unfinished},
                                    {"answers", list}});
         return;
     }
@@ -207,6 +220,9 @@ void analyseStudies(const std::vector<std::string>& folders, const std::filesyst
                       ? ", means by a bootstrap over participants\n"
                       : "\n");
     if (!leftOut.empty()) std::cout << leftOut << "\n";
+    for (const Unfinished& u : all.unfinished)
+        std::cout << u.participant << " has not finished: " << u.answered << " of " << counted(u.planned, "trial")
+                  << "\n";
     for (const AnswerSummary& s : summaries) printText(s);
 }
 

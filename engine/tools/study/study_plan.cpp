@@ -226,6 +226,20 @@ StudyPlan parsePlan(std::string_view text, const std::string& name, const std::f
     return plan;
 }
 
+std::optional<std::size_t> trialsPlanned(std::string_view canonical)
+{
+    try {
+        const Json  plan   = Json::parse(canonical);
+        const auto  rounds = plan.value("repetitions", std::size_t(1));
+        std::size_t trials = 0;
+        for (const Json& task : plan.at("tasks"))
+            trials += rounds * (task.contains("pairs") ? task["pairs"] : plan.at("conditions")).size();
+        return trials;
+    } catch (const Json::exception&) {
+        return {};
+    }
+}
+
 StudyPlan readPlan(const std::filesystem::path& file)
 {
     return parsePlan(readWhole(file, kLargestFile, "a plan of a study, of some thousand bytes"), file.string(),

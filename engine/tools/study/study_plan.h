@@ -57,13 +57,16 @@ struct StudyPlan {
     std::string            canonical; ///< all that defines the study, as one text, to compare plans
 };
 
-/// Reads a plan: JSON, comments allowed. Scenes, and the file of a hand, are paths from the plan's folder. A condition's "preset" and "values"
-/// override its scene as flags do, and "values" override "preset". Environment variables have no effect, so that the
-/// plan defines the study.
+/// Reads a plan: JSON, comments allowed. Scenes, and the file of a hand, are paths from the plan's folder. A condition's
+/// "preset" and "values" override its scene as flags do, and "values" override "preset". Environment variables have no
+/// effect, so that the plan defines the study.
 /// \throws Error naming the file, the condition or task, the key, what was expected and found
 [[nodiscard]] StudyPlan readPlan(const std::filesystem::path& file);
 
 /// Reads the same from a text that is called `name` and lies in `folder`.
 [[nodiscard]] StudyPlan parsePlan(std::string_view text, const std::string& name, const std::filesystem::path& folder);
+
+/// Returns how many trials each participant has by a plan's canonical text; none if the text is none of this version's.
+[[nodiscard]] std::optional<std::size_t> trialsPlanned(std::string_view canonical);
 
 } // namespace palp::study

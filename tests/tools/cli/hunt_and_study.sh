@@ -140,10 +140,16 @@ cut -d, -f1-3 study/P02/trials.csv >columns.txt
 printf 'participant,trial,block\nP02,1,1\nP02,2,1\nP02,3,2\n' | cmp -s - columns.txt && pass || complain "trials lost or repeated after a kill: $(cat study/P02/trials.csv)"
 : >input
 good 'analysed' study --analyse study --plot shares.svg --json
-for word in '"participants": 2' '"trials": 6' '"left_out": 0' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
+for word in '"participants": 2' '"trials": 6' '"left_out": 0' '"unfinished": []' '"weber": 0.22' '"wilson_95"' '"noticeable_steps"' '"mean_bootstrap_95"'; do holds "$word"; done
 good 'in words' study --analyse study
 holds 'predicted, not measured'
 holds 'means by a bootstrap'
+grep -q 'has not finished' out.txt && complain 'who has finished is said not to have' || pass
+cp -r study part && sed -i '3,$d' part/P02/trials.csv
+good 'one has not finished' study --analyse part
+holds 'P02 has not finished: 1 of 3 trials'
+good 'the same as JSON' study --analyse part --json
+for word in '"answered": 1' '"planned": 3'; do holds "$word"; done
 bad 'a folder twice' 'study/P01: expected each folder once' study --analyse study study/P01
 grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'
 sed 's/4e5/5e5/' plan.json >changed.json

@@ -129,6 +129,17 @@ TEST(StudyOrder, AnOddNumberOfRepetitionsIsEvenedOutOverTwoParticipants)
     for (const auto& [pair, n] : times) EXPECT_EQ(n, 3);
 }
 
+TEST(StudyOrder, ThePlansTextTellsTheNumberOfTrials)
+{
+    for (const std::string& tasks : {kRating, kPairs, kRating + "," + kPairs})
+        for (const int repetitions : {1, 3}) {
+            const StudyPlan studied = plan(5, tasks, repetitions);
+            EXPECT_EQ(trialsPlanned(studied.canonical), trialsOf(studied, 1).size()) << tasks << repetitions;
+        }
+    for (const char* none : {"", "{}", "[1]", R"({"tasks": [3]})", R"({"tasks": [], "repetitions": "x"})"})
+        EXPECT_FALSE(trialsPlanned(none)) << none;
+}
+
 TEST(StudyOrder, AParticipantsNameEndsInItsNumber)
 {
     EXPECT_EQ(participantNumber("P01"), 1u);
