@@ -109,7 +109,7 @@ private:
     unsigned long                    scheduled_ = 0;
     Beat*                            beat_      = nullptr; ///< null: no callback is scheduled
     bool                             isHomed_   = false;
-    int                              looked_    = 0; ///< exchanges since the last look at the calibration
+    double                           looked_    = 0; ///< [s] of the last look at the calibration
     std::optional<double>            off_;           ///< [s] since when it is asked for none, after one that it refused
     const char*                      refused_ = nullptr;
 };
@@ -122,7 +122,6 @@ void OpenHapticsLine::open(HapticDeviceInfo& info)
         throw Error(std::string("OpenHaptics cannot be used: ") + error.what() +
                     "; install OpenHaptics and the Touch driver, or set OPENHAPTICS to the folder of libHD.so");
     }
-    looked_  = 0;
     refused_ = nullptr;
     off_.reset();
     static_cast<void>(worstError()); // of before
@@ -148,6 +147,7 @@ void OpenHapticsLine::open(HapticDeviceInfo& info)
     hd_->hdEnable(kHdClamping);
     hd_->hdEnable(kHdOutput);
     isHomed_ = hd_->hdCheckCalibration() == kHdCalibrated;
+    looked_  = settings_.clock();
 }
 
 void OpenHapticsLine::describe(HapticDeviceInfo& info)
@@ -190,8 +190,9 @@ bool OpenHapticsLine::drive(const std::function<void()>& turn)
 /// is. A calibration that could only be better (kHdUpdate) is left alone while it is in use: the hand would jump.
 void OpenHapticsLine::calibrate() noexcept
 {
-    if (++looked_ < settings_.exchangesToLook) return;
-    looked_               = 0;
+    const double now = settings_.clock();
+    if (!(now - looked_ >= settings_.secondsToLook)) return;
+    looked_               = now;
     const unsigned state  = hd_->hdCheckCalibration();
     const bool     isKept = isHomed_ && state == kHdUpdate;
     isHomed_              = state == kHdCalibrated || isKept;

@@ -13,9 +13,9 @@ namespace palp {
 extern const DeviceRecord kOpenHapticsRecord;
 
 struct OpenHapticsSettings {
-    std::string name{};                ///< of the device in their setup program; empty: the default one
-    double      restToTry       = 0.5; ///< [s] at zero force after which forces are switched on again
-    int         exchangesToLook = 200; ///< between looks whether the device is calibrated, while it is not
+    std::string name{};              ///< of the device in their setup program; empty: the default one
+    double      restToTry     = 0.5; ///< [s] at zero force after which forces are switched on again
+    double      secondsToLook = 0.2; ///< [s] between looks whether the device is calibrated
 
     std::function<double()> clock = machineTime; ///< [s]; it never goes back
 };
