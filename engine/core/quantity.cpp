@@ -66,14 +66,6 @@ std::span<const Unit> unitsOf(Dimension dimension)
     return {};
 }
 
-/// Returns the unit as the tables have it: written with the micro sign or with the Greek letter it begins with u there.
-std::string inAscii(std::string_view unit)
-{
-    for (const std::string_view micro : {"\u00b5", "\u03bc"})
-        if (unit.starts_with(micro)) return "u" + std::string(unit.substr(micro.size()));
-    return std::string(unit);
-}
-
 std::string listed(std::span<const Unit> units)
 {
     std::string text;
@@ -106,6 +98,13 @@ NumberAndUnit split(std::string_view text, std::string_view what)
 
 } // namespace
 
+std::string unitInAscii(std::string_view unit)
+{
+    for (const std::string_view micro : {"\u00b5", "\u03bc"})
+        if (unit.starts_with(micro)) return "u" + std::string(unit.substr(micro.size()));
+    return std::string(unit);
+}
+
 double parseQuantity(std::string_view text, Dimension dimension, std::string_view what, double siPerPlainNumber)
 {
     const auto [number, unit] = split(text, what);
@@ -116,7 +115,7 @@ double parseQuantity(std::string_view text, Dimension dimension, std::string_vie
     };
     if (unit.empty()) return inSi(siPerPlainNumber);
     for (const Unit& known : unitsOf(dimension))
-        if (known.name == inAscii(unit)) return inSi(known.inSi);
+        if (known.name == unitInAscii(unit)) return inSi(known.inSi);
     throw Error(std::string(what) + ": unknown unit " + inQuotes(unit) + " in " + inQuotes(text) +
                 "; known units: " + listed(unitsOf(dimension)));
 }
@@ -144,7 +143,7 @@ double siPerUnitOf(const ColumnHead& head, Dimension dimension, const std::strin
 double metresPer(std::string_view lengthUnit)
 {
     for (const Unit& known : kLengths)
-        if (known.name == inAscii(lengthUnit)) return known.inSi;
+        if (known.name == unitInAscii(lengthUnit)) return known.inSi;
     throw Error("unknown length unit \"" + std::string(lengthUnit) + "\"; known units: " + listed(kLengths));
 }
 

@@ -22,6 +22,10 @@ enum class Dimension {
     mass
 };
 
+/// Returns a unit as the tables of units have it: one that is written with the micro sign, or with the Greek letter,
+/// begins with u there.
+[[nodiscard]] std::string unitInAscii(std::string_view unit);
+
 /// Reads "4mm", "1.5 N", "0.3MPa", "2e-3": a finite number and a unit.
 /// \param siPerPlainNumber  SI units in one of a number without a unit
 /// \return the value in SI units

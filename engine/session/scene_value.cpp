@@ -8,6 +8,7 @@
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
 #include "engine/core/nearest_name.h"
+#include "engine/core/quantity.h"
 #include "engine/core/shown_text.h"
 #include "engine/session/scene_keys.h"
 
@@ -106,7 +107,7 @@ bool WrittenValue::yesNo() const
 
 std::string WrittenValue::word() const
 {
-    if (std::ranges::find(key.words, text) != key.words.end()) return text;
+    if (const std::string word = unitInAscii(text); std::ranges::find(key.words, word) != key.words.end()) return word;
     const std::vector<std::string_view> words(key.words.begin(), key.words.end());
     const auto                          meant = nearestName(text, words);
     refuse(meant ? "; did you mean \"" + std::string(*meant) + "\"?" : "");

@@ -390,6 +390,8 @@ TEST(Scene, ACloudFileLiesBesideItsSceneAndIsScaledByItsUnit)
                          static_cast<void>(readScene(file, overrides({{"length_unit", "parsec"}})));
                      }),
                      {"--length-unit", "parsec"}));
+    for (const char* micrometres : {"um", "\u00b5m", "\u03bcm"})
+        EXPECT_EQ(readScene(file, overrides({{"length_unit", micrometres}})).reading.lengthUnit, "um");
     EXPECT_TRUE(says(refusalOf([&] {
                          SceneOverrides flags    = overrides({{"window", "1e-6"}, {"length_unit", "mm"}});
                          flags.flagsInLengthUnit = true;

@@ -14,8 +14,10 @@
 #include "engine/core/contract.h"
 #include "engine/core/counted.h"
 #include "engine/core/quantity.h"
+#include "engine/core/shown_text.h"
 #include "engine/session/interrupt.h"
 #include "engine/session/marker_input.h"
+#include "engine/session/scene_keys.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
 #include "engine/tools/cli/hand_source.h"
@@ -43,6 +45,13 @@ struct ViewOptions {
     std::string              markers{}; ///< an address where markers are awaited; empty: none
     bool                     dark = false, json = false, noPanels = false, validate = false;
 };
+
+/// Returns whether SCENE is the folder of a recorded session.
+bool isFolder(const std::string& scene)
+{
+    std::error_code hidden; // reading says why
+    return std::filesystem::is_directory(scene, hidden);
+}
 
 #ifdef PALPATE_WINDOW
 
@@ -138,7 +147,7 @@ std::vector<std::string> offeredObjects()
 /// Returns the scorer of a scene in which something is hidden; empty for any other, and for recorded sessions.
 std::optional<study::HuntScorer> scorerFor(const SceneSource& source)
 {
-    if (std::error_code hidden; std::filesystem::is_directory(source.name, hidden)) return {};
+    if (isFolder(source.name)) return {};
     const Scene scene = source.load();
     if (!study::hiddenIn(scene)) return {};
     return std::make_optional<study::HuntScorer>(scene, source.loadCloud(scene).cloud);
@@ -310,6 +319,9 @@ void addViewCommand(CLI::App& app)
                     "  palpate view sample:ellipsoid --hand circle --seconds 10 --json");
     command->callback([command, o] {
         o->command = commandOf(*command);
+        if (isFolder(o->scene.name) && !o->scene.flags.empty())
+            throw Error(flagOf(o->scene.flags.begin()->first) + " has no effect on a recorded session, " +
+                        shownPath(o->scene.name) + ", which says what its scene was; omit the option");
         if (deviceNamed(o->hand.hand) == &kMouseRecord) demandFitting(o->hand); // others: when they are opened
         view(*o);
     });

@@ -360,6 +360,8 @@ bad 'a reach of a press' '--reach belongs to the hands circle and scan' run scen
 bad 'a recording on standard output' '--record: expected a folder, found "-", which stands for standard output' run scene.json --hand press --record - --clock virtual
 bad 'a speed of the mouse' '--speed belongs to the hands press, circle, scan, found --hand mouse' view sample:sheet --speed 10mm/s
 bad 'a grip on the mouse' '--arm: no scripted hand grips the mouse' view sample:sheet --arm 150N/m
+mkdir -p recorded
+bad 'a scene option of a recorded session' '--window has no effect on a recorded session, recorded,' view recorded --window 30mm
 bad 'an arm of the mouse' '--forcedimension-init is an option of --hand forcedimension, found --hand mouse' view sample:sheet --forcedimension-init
 bad 'a reach of a device' '--reach belongs to the hands circle and scan, found' run scene.json --hand spacemouse --reach 1mm
 ln -sf skin.ply linked.png
