@@ -34,20 +34,42 @@ glm::dvec3 highestOfSurface(std::span<const glm::dvec3> positions)
     return positions[order.front()];
 }
 
+/// What a coordinate spans but for the outermost points, among which strays are [m].
+struct Extent {
+    double low = 0, high = 0;
+
+    [[nodiscard]] double width() const { return high - low; }
+    [[nodiscard]] double middle() const { return (low + high) / 2; }
+};
+
+Extent extentOf(std::span<const glm::dvec3> positions, int axis)
+{
+    constexpr double    kOutermost = 0.005; // of the points, at either end [1]
+    std::vector<double> values;
+    for (const glm::dvec3& p : positions) values.push_back(p[axis]);
+    const auto skipped = std::ptrdiff_t(kOutermost * double(values.size()));
+    const auto low = values.begin() + skipped, high = values.end() - 1 - skipped;
+    std::nth_element(values.begin(), low, values.end());
+    std::nth_element(low, high, values.end());
+    return {*low, *high};
+}
+
 /// Returns the point of the largest z; of a flat top the one in its middle. There the largest z is noise, or all points
 /// have it, and the first may lie in a corner.
 glm::dvec3 highestOf(const PointCloud& cloud)
 {
     constexpr double kFlat     = 0.9; // of the cloud's width, both ways, is within a spacing of the largest z [1]
     const auto       positions = cloud.positions();
-    const glm::dvec3 width = cloud.bounds().high - cloud.bounds().low, middle = cloud.bounds().centre();
-    const double     spacing = std::sqrt(width.x * width.y / double(cloud.size())); // [m] of a flat cloud
+    const Extent     x = extentOf(positions, 0), y = extentOf(positions, 1);
+    const double     spacing = std::sqrt(x.width() * y.width() / double(cloud.size())); // [m] of a flat cloud
     glm::dvec3       highest = *std::ranges::max_element(positions, {}, [](const glm::dvec3& p) { return p.z; });
     const auto       beside  = std::ranges::count_if(
                positions, [&](const glm::dvec3& p) { return glm::distance(p, highest) <= kReach * spacing; });
     if (std::size_t(beside) < kCompany) highest = highestOfSurface(positions);
 
-    const auto aside = [&](const glm::dvec3& p) { return glm::length(glm::dvec2(p) - glm::dvec2(middle)); };
+    const auto aside = [&](const glm::dvec3& p) {
+        return glm::length(glm::dvec2(p) - glm::dvec2(x.middle(), y.middle()));
+    };
     glm::dvec3 low = highest, high = highest, inside = highest;
     for (const glm::dvec3& p : positions) {
         if (p.z < highest.z - spacing || p.z > highest.z) continue;
@@ -55,7 +77,7 @@ glm::dvec3 highestOf(const PointCloud& cloud)
         high = glm::max(high, p);
         if (aside(p) < aside(inside)) inside = p;
     }
-    const bool isFlat = high.x - low.x >= kFlat * width.x && high.y - low.y >= kFlat * width.y;
+    const bool isFlat = high.x - low.x >= kFlat * x.width() && high.y - low.y >= kFlat * y.width();
     return isFlat ? inside : highest;
 }
 
