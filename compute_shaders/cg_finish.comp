@@ -1,11 +1,12 @@
 // cg_finish.comp - the update of the last step that a list of fused steps took, wherever its numbers are.
 // Domain     x: one invocation per node; z: loads
-// Reads      alpha and number of steps (real), both directions and the forces q = A p of the last one, both residuals (real)
-// Writes     answer x, the first residual, the first direction (real; each invocation its own number), with which the next
+// Reads      alpha and number of steps (real), both directions and the forces q = A p of the last one, both residuals
+// (real) Writes     answer x, the first residual, the first direction (real; each invocation its own number), with
+// which the next
 //            list begins; the residual rounded for the cycle (float)
 //
-// Of an odd number of steps the last one had the second direction and the first residual, of an even one the others. The
-// steps before it were updated on the way down of the next one's cycle, see plate_down.comp.
+// Of an odd number of steps the last one had the second direction and the first residual, of an even one the others.
+// The steps before it were updated on the way down of the next one's cycle, see plate_down.comp.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -1,8 +1,8 @@
 // cg_last_group.glsl - sums over a load in one dispatch, which the load's last workgroup completes.
 //
 // Each workgroup writes its own sum and takes a ticket; who takes the last one finds all sums written, adds them in a
-// fixed order, and goes on with the total. So it does not matter which workgroup is the last, and none waits for another
-// one, which Vulkan would not promise to end.
+// fixed order, and goes on with the total. So it does not matter which workgroup is the last, and none waits for
+// another one, which Vulkan would not promise to end.
 //
 // The includer declares  tickets,  a coherent buffer of one uint per load, which are 0 between dispatches, and declares
 // coherent what the last workgroup reads of the others. Workgroups have a power of two of invocations.

@@ -1,9 +1,10 @@
 // cg_probe.comp - the next direction of conjugate gradients, its forces, and how far to go along it, in one dispatch.
 // Domain     one invocation per node, workgroups of a power of two of them; z: loads
-// Reads      rigidity and foundation [1], preconditioned residual z (float), last direction (real), state with beta (real)
-// Writes     direction p = z + beta p (real), forces q = A p (real), 0 on held nodes; sums of the workgroups of (p, q)
-//            (real); state of the load; when every load is finished, zeroes to the arguments of the indirect dispatches,
-//            so that everything recorded after this does nothing
+// Reads      rigidity and foundation [1], preconditioned residual z (float), last direction (real), state with beta
+// (real) Writes     direction p = z + beta p (real), forces q = A p (real), 0 on held nodes; sums of the workgroups of
+// (p, q)
+//            (real); state of the load; when every load is finished, zeroes to the arguments of the indirect
+//            dispatches, so that everything recorded after this does nothing
 //
 // An invocation needs the direction of 13 nodes and computes it anew for each, so that the new one goes to a memory of
 // its own. Behind the loads' tickets stand two more words: loads that are done with this dispatch, and those of them

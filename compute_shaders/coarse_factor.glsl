@@ -1,9 +1,9 @@
-// coarse_factor.glsl - Cholesky factor of the coarsest level's band, A = L L', by one workgroup: unknown after unknown, the
-// columns within reach updated side by side.
+// coarse_factor.glsl - Cholesky factor of the coarsest level's band, A = L L', by one workgroup: unknown after unknown,
+// the columns within reach updated side by side.
 //
-// The includer declares  band  and  factor,  buffers of real: columns of the lower triangle of A, and those of L with the
-// inverse of the diagonal in its place, 0 where rounding has left no pivot. Include coarse_band.h first. A workgroup has a
-// power of two of invocations.
+// The includer declares  band  and  factor,  buffers of real: columns of the lower triangle of A, and those of L with
+// the inverse of the diagonal in its place, 0 where rounding has left no pivot. Include coarse_band.h first. A
+// workgroup has a power of two of invocations.
 
 #ifdef PALPATE_DOUBLE
 const real kLeast = real(kLeastPivotDouble), kDoubtful = kLeast;

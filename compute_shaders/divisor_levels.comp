@@ -1,5 +1,5 @@
-// divisor_levels.comp - inverse divisors of all levels but the coarsest, and tiles in which their rigidities jump, in one
-// dispatch.
+// divisor_levels.comp - inverse divisors of all levels but the coarsest, and tiles in which their rigidities jump, in
+// one dispatch.
 // Domain     x, y: nodes, y over the rows of all levels, then over their rows of tiles; workgroups are one row high;
 //            z: as in plate_divisor.comp; a workgroup of tiles marks each of as many as there are workgroups along x
 // Reads      the levels; rigidity and foundation of all [1]

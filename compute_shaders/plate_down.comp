@@ -1,5 +1,5 @@
-// plate_down.comp - the way down of a cycle on one level: sweeps from zero deflection, the residual, and its restriction.
-// Domain     one workgroup along x per kOwned x kOwned nodes, see plate_region.glsl; z: loads
+// plate_down.comp - the way down of a cycle on one level: sweeps from zero deflection, the residual, and its
+// restriction. Domain     one workgroup along x per kOwned x kOwned nodes, see plate_region.glsl; z: loads
 // Reads      rigidity and foundation [1], inverse divisor [1], transfer tables
 // Reads      force of this level; with PALPATE_UPDATES instead what gives it: the state's alpha, direction p and its
 //            forces q = A p, the residual r before the step (real)

@@ -1,7 +1,8 @@
 // plate_footprints.comp - what each load feels of its own deflection, from an answer that is only nearly right.
 //
-// The compliance (f, x) is wrong by the answer's error e, in the first order. With the residual r = f - A x that conjugate
-// gradients have anyway, (f, x) + (r, x) = (f, A^-1 f) - (e, A e): the error is the square of the one in energy.
+// The compliance (f, x) is wrong by the answer's error e, in the first order. With the residual r = f - A x that
+// conjugate gradients have anyway, (f, x) + (r, x) = (f, A^-1 f) - (e, A e): the error is the square of the one in
+// energy.
 //
 // Domain     z: loads; one workgroup each, of a power of two of invocations
 // Reads      residual r (real), answer x (real), footprints (see shared/footprint_layout.h)

@@ -1,12 +1,14 @@
 // plate_nested.comp - nested iteration on the coarse levels, from loads to a deflection, by one workgroup per load.
 // Domain     x: one workgroup; z: loads
 // Reads      as plate_tail.comp, with the load of the first level in place of its force
-// Writes     deflection of the first level, 0 on held nodes; of all levels load, answer, residual and direction, and what is
+// Writes     deflection of the first level, 0 on held nodes; of all levels load, answer, residual and direction, and
+// what is
 //            put aside
 //
-// Loads are gathered downwards; the coarsest level is solved; then level by level upwards the answer is interpolated and
-// takes a step of conjugate gradients, or push.steps on the first level. All but the coarsest level's sums is in floats: the answer begins the iteration
-// on a finer level, whose residual is computed anew, so that its rounding costs no accuracy.
+// Loads are gathered downwards; the coarsest level is solved; then level by level upwards the answer is interpolated
+// and takes a step of conjugate gradients, or push.steps on the first level. All but the coarsest level's sums is in
+// floats: the answer begins the iteration on a finer level, whose residual is computed anew, so that its rounding costs
+// no accuracy.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile

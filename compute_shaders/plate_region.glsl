@@ -6,8 +6,8 @@
 // plate_relax.comp, to the bit.
 //
 // The includer declares D and inverseDivisor, kBeyond, the nodes beyond its own ones on which it needs the result too,
-// and  PlateLevel region(), float forceAt(int i, int j), bool isSwept(int i, int j),  which return the level, its forces, and
-// whether a node takes part.
+// and  PlateLevel region(), float forceAt(int i, int j), bool isSwept(int i, int j),  which return the level, its
+// forces, and whether a node takes part.
 
 layout(constant_id = 3) const int kSweeps = 2; // before, or after, the correction
 const int kRim = kRimPerSweep * kSweeps + kBeyond; // [nodes]

@@ -1,6 +1,7 @@
 // plate_relax.comp - half a sweep of red-black relaxation of the plate.
 // Domain     one invocation per node of one colour: column i, every second row; excess invocations return
-// Reads      rigidity and foundation [1], inverse divisor [1], force of this level, deflection: nodes of the colour from before this
+// Reads      rigidity and foundation [1], inverse divisor [1], force of this level, deflection: nodes of the colour
+// from before this
 //            half sweep, the others from after the last one
 // Writes     deflection of nodes of push.colour, and nothing else
 #version 460

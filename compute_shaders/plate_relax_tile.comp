@@ -1,5 +1,5 @@
-// plate_relax_tile.comp - half a sweep of relaxation in the tiles where the rigidity jumps; plate_copy_tile.comp follows.
-// Domain     a workgroup of kTile x kTile per listed tile; invocations of the other colour return
+// plate_relax_tile.comp - half a sweep of relaxation in the tiles where the rigidity jumps; plate_copy_tile.comp
+// follows. Domain     a workgroup of kTile x kTile per listed tile; invocations of the other colour return
 // Reads      rigidity and foundation [1], inverse divisor [1], force, deflection of this level; list of tiles
 // Writes     new deflections of nodes of push.colour of these tiles, aside: others still need the old ones
 #version 460

@@ -1,6 +1,7 @@
 // plate_smooth.comp - one step of Chebyshev's iteration.
 // Domain     one invocation per node; excess invocations return
-// Reads      rigidity and foundation [1], inverse divisor [1], force of this level, deflection before this step; the deflection before
+// Reads      rigidity and foundation [1], inverse divisor [1], force of this level, deflection before this step; the
+// deflection before
 //            that, in the memory that is written, unless push.ahead is 0
 // Writes     deflection
 #version 460

@@ -3,7 +3,8 @@
 // Reads      rigidity and foundation [1], inverse divisor [1], force, deflection of this level; marks of tiles
 // Writes     deflection, 0 on held nodes
 //
-// Of the tiles the sweeps equal those of plate_relax_tile.comp and plate_copy_tile.comp, to the bit: four dispatches each.
+// Of the tiles the sweeps equal those of plate_relax_tile.comp and plate_copy_tile.comp, to the bit: four dispatches
+// each.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require // unrolled sweeps take a driver seconds to compile

@@ -1,11 +1,11 @@
 // plate_tail.glsl - cycles on the coarse levels by one workgroup per load, for plate_tail.comp and plate_nested.comp.
 //
 // A dispatch on a small level costs mainly the wait for it, so all small levels together are one dispatch. Invocations
-// exchange numbers of a cycle through shared memory only; deflections put aside on the way down are each invocation's own
-// nodes'. Sweeps, residual and transfers equal those of single dispatches, to the bit; the coarsest level is solved by its
-// inverse, which invocations share better than substitution. Its sums are in doubles where the processor has them: a plate
-// that is softly held sinks by a thousand times more than it bends, and floats would round the bending away. Pairs of floats
-// would take longer, also where a double takes 64 times as long as a float.
+// exchange numbers of a cycle through shared memory only; deflections put aside on the way down are each invocation's
+// own nodes'. Sweeps, residual and transfers equal those of single dispatches, to the bit; the coarsest level is solved
+// by its inverse, which invocations share better than substitution. Its sums are in doubles where the processor has
+// them: a plate that is softly held sinks by a thousand times more than it bends, and floats would round the bending
+// away. Pairs of floats would take longer, also where a double takes 64 times as long as a float.
 //
 // The includer declares push, with the numbers of levels and of nodes of all of them, kSweeps before and after each
 // correction, and  float givenForce(int node),  the force of a node of the level that a cycle begins with.
@@ -165,8 +165,8 @@ wide partOfProduct(int nodes, int row, int begin, int end)
     return (a + b) + (c + d);
 }
 
-// Where there are more invocations than nodes several share a row. Their sums meet in the pool of the tail's largest level,
-// which holds nothing while the coarsest one is solved; a double there is two floats.
+// Where there are more invocations than nodes several share a row. Their sums meet in the pool of the tail's largest
+// level, which holds nothing while the coarsest one is solved; a double there is two floats.
 void solveCoarsest()
 {
     int nodes = nodesOf(here.plate), lane = int(gl_LocalInvocationID.x);

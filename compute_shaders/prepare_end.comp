@@ -1,5 +1,5 @@
-// prepare_end.comp - lists of the tiles in which the rigidity jumps, and the factor of the coarsest level, in one dispatch.
-// Domain     one workgroup along x per level; those before the last list the tiles, the last one factors
+// prepare_end.comp - lists of the tiles in which the rigidity jumps, and the factor of the coarsest level, in one
+// dispatch. Domain     one workgroup along x per level; those before the last list the tiles, the last one factors
 // Reads      the levels; rigidity and foundation of all [1]; marks of the tiles
 // Writes     per level number of marked tiles, then their indices; the coarsest level's matrix and its factor, see
 //            coarse_factor.glsl (real); for the host per level the number of tiles, of the coarsest that of lost pivots

@@ -5,8 +5,9 @@
 // Writes     those of the coarser levels [1]
 //
 // A workgroup makes the levels down to its own nodes in shared memory, rims included that others make too, so that none
-// needs another's numbers; of what it has made it writes the part that it owns. The workgroup that ends last goes on with
-// the levels below, which are small, see cg_last_group.glsl. Numbers equal those of rigidity_coarsen.comp, to the bit.
+// needs another's numbers; of what it has made it writes the part that it owns. The workgroup that ends last goes on
+// with the levels below, which are small, see cg_last_group.glsl. Numbers equal those of rigidity_coarsen.comp, to the
+// bit.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_control_flow_attributes : require

@@ -3,8 +3,8 @@
 // Reads      the inverse, which is symmetric, row after row (double), places of the unknowns in a field, right side
 // Writes     fields
 //
-// Substitution by the factors waits for every unknown in turn, with all but one multiprocessor idle: 0.4 ms for 450 of them,
-// where all other passes of a step together take 0.2. A product has nothing to wait for.
+// Substitution by the factors waits for every unknown in turn, with all but one multiprocessor idle: 0.4 ms for 450 of
+// them, where all other passes of a step together take 0.2. A product has nothing to wait for.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -5,8 +5,8 @@
 //
 // With PALPATE_INVERTS load n is a unit at unknown n, and column n of the inverse is written (double).
 //
-// In the order of the host's kernel: from below a product with a column is summed in eight lanes, whose sums are added to
-// that of the rest.
+// In the order of the host's kernel: from below a product with a column is summed in eight lanes, whose sums are added
+// to that of the rest.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -3,7 +3,8 @@
 // Reads      tables of w and phi along x, and along z (shared/transfer_layout.h); fields of the other level
 // Writes     with PALPATE_RESTRICTS the coarse fields; else adds to the fine ones, or puts them if push.fromZero
 //
-// The sums are those of the host: a restriction sums along x first, an interpolation along z, and no weight of 0 counts.
+// The sums are those of the host: a restriction sums along x first, an interpolation along z, and no weight of 0
+// counts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -118,8 +118,8 @@ public:
     /// Sends zero force, then releases the device. Does nothing if it is closed.
     virtual void close() noexcept = 0;
 
-    /// Returns the state of the hand. Like render() it takes well below a millisecond, waits for no thread and allocates
-    /// nothing.
+    /// Returns the state of the hand. Like render() it takes well below a millisecond, waits for no thread and
+    /// allocates nothing.
     /// \param now  [s] of the servo's clock; simulated devices move on to it
     virtual HapticState read(double now) noexcept = 0;
 

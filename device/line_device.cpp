@@ -226,7 +226,8 @@ void LineDevice::readInbox(double now) noexcept
     seenSilenced_ = sample.silenced;
     if (!started_) lastSample_ = now; // silence before the first read() does not count
     if (inbox.good == seenGood_) {
-        // The governor stops for good where more than kMissed are missed: after kSilence, not after a pause of the system.
+        // The governor stops for good where more than kMissed are missed: after kSilence, not after a pause of the
+        // system.
         ++readsWithout_;
         state_.missed = std::min(readsWithout_, int(kMissed * std::clamp((now - lastSample_) / kSilence, 0.0, 2.0)));
         return;

@@ -23,8 +23,8 @@ struct SimulatedArmSettings {
     glm::dvec3 weight{};               ///< [N] by which gravity pulls the grip; see fallingArm()
 };
 
-/// Returns an arm that gravity pulls: 0.21 kg of it weigh on the grip, along -y. One author's driver carries a Falcon by
-/// a command that means 0.21 kg at 4200 counts per N m [I].
+/// Returns an arm that gravity pulls: 0.21 kg of it weigh on the grip, along -y. One author's driver carries a Falcon
+/// by a command that means 0.21 kg at 4200 counts per N m [I].
 [[nodiscard]] SimulatedArmSettings fallingArm();
 
 /// A hand that pulls the grip by a spring and a damper to a place that moves at constant velocity.

@@ -7,9 +7,9 @@
 #define PALPATE_IN_ORDER precise
 #endif
 
-// The slowest part of the error that the steps have met: 1 over the smallest Ritz value. The matrix of Lanczos' method is
-// R'R with R bidiagonal, of alphas and betas; the largest eigenvalue of (R'R)^-1 grows with each column of R^-1, and the
-// vector that gives it is kept by its products with the last column alone.
+// The slowest part of the error that the steps have met: 1 over the smallest Ritz value. The matrix of Lanczos' method
+// is R'R with R bidiagonal, of alphas and betas; the largest eigenvalue of (R'R)^-1 grows with each column of R^-1, and
+// the vector that gives it is kept by its products with the last column alone.
 struct CgSlowest {
     real most;  // 1 over the smallest Ritz value, from below [1]
     real last;  // square of the last column of R^-1
@@ -45,8 +45,8 @@ CgSlowest slowestAfter(CgSlowest before, real alpha, real beta, real lastAlpha)
 }
 
 // What is left after a step, in the squared energy norm, at most; by Gauss-Radau quadrature with a node at 64/91 of the
-// smallest Ritz value, and for conjugate gradients that began one step before: rules that begin with the first step need
-// a Ritz value that has settled, or turn negative.
+// smallest Ritz value, and for conjugate gradients that began one step before: rules that begin with the first step
+// need a Ritz value that has settled, or turn negative.
 //
 // Source   Meurant & Tichy 2023, "The behaviour of the Gauss-Radau upper bound of the error norm in CG"
 // Differs  the rule is that of the last two steps, see above
@@ -66,11 +66,11 @@ real leftAtMost(CgSlowest slowest, real alpha, real beta, real lastAlpha, real r
 // below kSecondRatio it is not used. Where rounding leaves no positive pq no step is taken, and (r, z), which is about
 // the squared error, estimates the rest.
 //
-// The tail is right where the ratio is steady, and too small by a factor of up to 5.5 in the error where a stiff or soft
-// disc hides a slow part (25 discs, hinges and smooth maps, 3 sizes, two smoothers, 1728 stops). The bound never is, but
-// it is 3.5 times too large at the median and costs 14 % more steps. Of kBoundShare of the bound and the tail the larger
-// one is at most 2.3 times too small, and costs 8 %. Constants have few binary digits, because compilers of shaders round
-// a float in a double sum later than C++ does.
+// The tail is right where the ratio is steady, and too small by a factor of up to 5.5 in the error where a stiff or
+// soft disc hides a slow part (25 discs, hinges and smooth maps, 3 sizes, two smoothers, 1728 stops). The bound never
+// is, but it is 3.5 times too large at the median and costs 14 % more steps. Of kBoundShare of the bound and the tail
+// the larger one is at most 2.3 times too small, and costs 8 %. Constants have few binary digits, because compilers of
+// shaders round a float in a double sum later than C++ does.
 CgStep stepOf(real pq, real rz, real beta, real energy, real lastAlpha, real lastGain, real lastRatio, real steps,
               CgSlowest slowest)
 {

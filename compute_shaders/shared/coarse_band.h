@@ -27,8 +27,9 @@ const int kColumnsTogether = 32; // of the factor, in shared memory where the in
 // in doubles only contrasts of 1e12 and more.
 //
 // In floats rounding may as well leave such a motion a pivot of some 1e-5 by chance, and then the answer is wrong by as
-// much as it likes and seems to be right (a free plate on 1e-6 Pa/m by 7 %). So pivots up to kDoubtfulPivot are reported,
-// too, though they are used: those of a plate of 1 N m and 1 m that lies free on 0.5 Pa/m, or of a disc of 400.
+// much as it likes and seems to be right (a free plate on 1e-6 Pa/m by 7 %). So pivots up to kDoubtfulPivot are
+// reported, too, though they are used: those of a plate of 1 N m and 1 m that lies free on 0.5 Pa/m, or of a disc of
+// 400.
 const float kLeastPivot       = 1e-7f;  // [1]
 const float kDoubtfulPivot    = 1e-4f;  // [1]
 const float kLeastPivotDouble = 1e-15f; // [1]
@@ -45,9 +46,9 @@ PALPATE_INLINE int rowOf(PlateLevel g, int unknown)
     return zIsShorter(g) ? unknown % shorterNodes(g) : unknown / shorterNodes(g);
 }
 
-// 1 / sqrt(x), the inverse of the factor's diagonal. That of a double comes from a float's by two steps of Newton's method,
-// each of which doubles the digits, for which all columns of the factor wait one after the other. Pivots are of order one;
-// those that a float does not hold are taken as they are.
+// 1 / sqrt(x), the inverse of the factor's diagonal. That of a double comes from a float's by two steps of Newton's
+// method, each of which doubles the digits, for which all columns of the factor wait one after the other. Pivots are of
+// order one; those that a float does not hold are taken as they are.
 PALPATE_INLINE float inverseRoot(float x)
 {
 #ifdef __cplusplus

@@ -1,7 +1,7 @@
 // jump_tiles.h - where the rigidity jumps, tile by tile (GLSL and C++); include tile_layout.h first.
 //
-// Along the rim of a sharp inclusion a cycle leaves errors that extra sweeps there remove at little cost: with a disc of
-// contrast 1000 they halve the number of steps. A tile of kTile x kTile nodes takes part if, at one of its nodes or
+// Along the rim of a sharp inclusion a cycle leaves errors that extra sweeps there remove at little cost: with a disc
+// of contrast 1000 they halve the number of steps. A tile of kTile x kTile nodes takes part if, at one of its nodes or
 // beside it, the rigidity of the 3 x 3 nodes around varies by more than kJump.
 //
 // The includer provides  float rigidity(int i, int j).

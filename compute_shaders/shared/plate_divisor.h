@@ -1,7 +1,7 @@
 // plate_divisor.h - divisor of the relaxation from the entries of the operator's row (GLSL and C++).
 //
-// The includer provides  int unitI, unitJ  and a deflection that is 1 there and 0 elsewhere; include plate_operator.h and
-// plate_relax.h first.
+// The includer provides  int unitI, unitJ  and a deflection that is 1 there and 0 elsewhere; include plate_operator.h
+// and plate_relax.h first.
 
 // The m-th of the eight nodes that share the colour of their middle.
 int sameColourI(int m) { return m < 4 ? (m < 2 ? 2 - 4 * m : 0) : (m < 6 ? -1 : 1); }

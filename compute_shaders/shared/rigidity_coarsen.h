@@ -1,8 +1,8 @@
 // rigidity_coarsen.h - rigidity and foundation of a coarser level (GLSL and C++).
 //
-// Rigidity: geometric mean with weights 1/4, 1/2, 1/4 along each axis that is coarsened. Square roots of products, in place of
-// exponentials of logarithms, are rounded alike on every processor. Arithmetic means are as good for random rigidities
-// but much worse for sharp inclusions; harmonic means fail.
+// Rigidity: geometric mean with weights 1/4, 1/2, 1/4 along each axis that is coarsened. Square roots of products, in
+// place of exponentials of logarithms, are rounded alike on every processor. Arithmetic means are as good for random
+// rigidities but much worse for sharp inclusions; harmonic means fail.
 // Foundation: arithmetic mean with the same weights, since springs side by side add up, and a part may have none.
 //
 // The includer provides  float fineRigidity(int i, int j)  and  float fineShape(int i, int j).

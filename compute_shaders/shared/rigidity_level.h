@@ -22,8 +22,8 @@ struct RigidityPush {
     uint rows; // of nodes, of all levels but the coarsest
 };
 
-// A workgroup of rigidity_levels.comp makes kOwnNodes x kOwnNodes nodes of the level kDeep levels below the finest one, and
-// what they are made of on the levels between.
+// A workgroup of rigidity_levels.comp makes kOwnNodes x kOwnNodes nodes of the level kDeep levels below the finest one,
+// and what they are made of on the levels between.
 const int kDeep     = 3;
 const int kOwnNodes = 4;
 const int kMidNodes = 2 * kOwnNodes + 1; // along either side on the next finer level: two per node, and both neighbours

@@ -12,7 +12,8 @@
 //   (A w)(n) = sum over the twelve neighbours m of a(n, m) (w(m) - w(n)) + bed(n) w(n)
 //
 // because a row without its bed adds up to nothing, also towards held nodes, whose value is 0: what rounding does to an
-// entry is then relative to the slope and not to the deflection. An entry that two nodes share is kept at the first one.
+// entry is then relative to the slope and not to the deflection. An entry that two nodes share is kept at the first
+// one.
 #ifndef PALPATE_SHELL_LAYOUT_H
 #define PALPATE_SHELL_LAYOUT_H
 
@@ -108,8 +109,8 @@ inline
 // The most unknowns of the coarsest level that a workgroup takes, with the empty ones behind them.
 const uint kMostShellUnknowns = 1024u;
 
-// Numbers of the columns of its factor that a workgroup keeps together: room for two columns at least, because one has fewer
-// than kMostShellUnknowns.
+// Numbers of the columns of its factor that a workgroup keeps together: room for two columns at least, because one has
+// fewer than kMostShellUnknowns.
 const uint kShellTogether = 2048u;
 
 #ifdef __cplusplus

@@ -39,18 +39,18 @@ enum class FalconCalibrationStage : std::uint8_t {
 ///
 ///     G' = G (F1 - F0) / (mass gravity),
 ///
-/// which goes into FalconLoopSettings::countsPerTorque. A G' beyond the bounds of FalconMotors by more than 5 % (else it
-/// is the bound) is a failure: the mass is not the given one, or something else was weighed. So is an arm of more than
-/// 0.4 kg. Each weighing takes a quarter of a minute, hands off.
+/// which goes into FalconLoopSettings::countsPerTorque. A G' beyond the bounds of FalconMotors by more than 5 % (else
+/// it is the bound) is a failure: the mass is not the given one, or something else was weighed. So is an arm of more
+/// than 0.4 kg. Each weighing takes a quarter of a minute, hands off.
 ///
 ///     1  home the device; lift the grip to the middle of its workspace and hold it there loosely
-///     2  each tick: device.useCounts(countsInUse()), state = device.exchange(force), then governor.step() with step()'s force; let go as force comes on
-///     3  at `hang`: hang the mass on the grip, wait until it hangs still, call hung()
-///     4  at `done`: countsPerTorque()
+///     2  each tick: device.useCounts(countsInUse()), state = device.exchange(force), then governor.step() with
+///     step()'s force; let go as force comes on 3  at `hang`: hang the mass on the grip, wait until it hangs still,
+///     call hung() 4  at `done`: countsPerTorque()
 ///
-/// The governor's 6 N bound what can be weighed. While an arm is taken for one of 0.21 kg, within 8 %, these hold a mass
-/// of 1.3 times the arm. kMostMass is held beside every arm of 0.18 to 0.39 kg, also by weak motors: with 10 000 counts
-/// per N m these hold 5.9 N, arm included, and then it takes an arm of at most 0.25 kg.
+/// The governor's 6 N bound what can be weighed. While an arm is taken for one of 0.21 kg, within 8 %, these hold a
+/// mass of 1.3 times the arm. kMostMass is held beside every arm of 0.18 to 0.39 kg, also by weak motors: with 10 000
+/// counts per N m these hold 5.9 N, arm included, and then it takes an arm of at most 0.25 kg.
 /// \thread one
 class FalconCalibration {
 public:

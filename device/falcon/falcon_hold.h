@@ -13,8 +13,9 @@ namespace palp {
 ///
 /// The motors carry arm and mass (FalconCalibration has just ended, hands off). Then nothing is sent for a time T, and
 /// the next answer says how far the grip fell: s = a (T - hold)^2 / 2. T grows from 10 ms in steps of 5 ms, later of a
-/// tenth, 20 ms at most. At the first fall beyond 0.1 mm it goes back by its last step and on in steps of 5 ms, until the
-/// grip fell by more than 1.5 mm, or to 0.5 s; the straight line through the square roots of s meets zero at the hold. An exchange is a millisecond, so that is the resolution. The drop is some millimetres.
+/// tenth, 20 ms at most. At the first fall beyond 0.1 mm it goes back by its last step and on in steps of 5 ms, until
+/// the grip fell by more than 1.5 mm, or to 0.5 s; the straight line through the square roots of s meets zero at the
+/// hold. An exchange is a millisecond, so that is the resolution. The drop is some millimetres.
 /// \thread one
 class FalconHold {
 public:

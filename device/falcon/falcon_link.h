@@ -60,8 +60,8 @@ public:
     /// Returns whether, since the last call, a guardian process took the force because nothing was written for 25 ms.
     [[nodiscard]] virtual bool wasSilenced() noexcept { return false; }
 
-    /// Returns the serial number of the bridge: letters, digits and signs that need no quoting, 64 at most. Empty: it has
-    /// none.
+    /// Returns the serial number of the bridge: letters, digits and signs that need no quoting, 64 at most. Empty: it
+    /// has none.
     [[nodiscard]] virtual std::string serial() const { return {}; }
 
     /// Says to that process that the program lives, though it writes nothing on purpose.

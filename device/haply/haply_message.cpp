@@ -237,7 +237,8 @@ bool isHaplyId(std::string_view id) noexcept
 
 namespace {
 
-/// Returns a force of less than 10 N with four decimal places, always of seven characters, whatever the locale of a host.
+/// Returns a force of less than 10 N with four decimal places, always of seven characters, whatever the locale of a
+/// host.
 std::string inNewtons(double force)
 {
     std::array<char, 32> digits{};
@@ -303,8 +304,8 @@ HaplyVerdict takeHaplyState(std::string_view json, std::string_view id, HaplySta
     const auto  velocity = vectorAt(*device, {"state", "cursor_velocity"});
     if (speed && !velocity) return HaplyVerdict::garbled;
 
-    state.position = *position;
-    state.velocity = velocity;
+    state.position   = *position;
+    state.velocity   = velocity;
     state.rendered   = vectorAt(*device, {"state", "current_cursor_force"});
     state.calibrated = truthAt(*device, {"status", "calibrated"}).value_or(state.calibrated);
     state.ready      = truthAt(*device, {"status", "ready"}).value_or(state.ready);

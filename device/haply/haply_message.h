@@ -11,8 +11,8 @@
 #include "device/zero_rule.h"
 #include "engine/core/enum_names.h"
 
-// What is said to Haply's Inverse Service, and what it answers: JSON. Its frame has x right, y forward and z up; ours has
-// y up and z towards the user, so (x, y, z) there is (x, z, -y) here.
+// What is said to Haply's Inverse Service, and what it answers: JSON. Its frame has x right, y forward and z up; ours
+// has y up and z towards the user, so (x, y, z) there is (x, z, -y) here.
 namespace palp {
 
 /// The word before the coordinates of a force. A service knows one of the two, and ignores the other without a word.
@@ -53,8 +53,8 @@ constexpr auto namesOf(HaplyDialect)
 [[nodiscard]] std::string haplyCommand(std::string_view id, HaplyDialect dialect,
                                        const std::optional<glm::dvec3>& force);
 
-/// Returns the first message of a session: its name, the origin in the middle of the workspace, and a wish for the whole
-/// picture.
+/// Returns the first message of a session: its name, the origin in the middle of the workspace, and a wish for the
+/// whole picture.
 [[nodiscard]] std::string haplyGreeting(std::string_view id);
 
 /// Masked frames of WebSocket that hold such a command, and their zero. For a guardian process.

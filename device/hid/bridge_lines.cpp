@@ -212,8 +212,8 @@ std::unique_ptr<HidPort> openSerial(const BridgeLine& line)
     cfmakeraw(&settings);
     settings.c_cflag |= CLOCAL | CREAD;
     cfsetspeed(&settings, B921600); // a board with USB of its own ignores it
-    // Two programs at one arm would mix their forces. The lock stops those that ask for it, and of root's too; exclusive
-    // use all others but root's from now on, yet nobody who has the port open already.
+    // Two programs at one arm would mix their forces. The lock stops those that ask for it, and of root's too;
+    // exclusive use all others but root's from now on, yet nobody who has the port open already.
     const bool isOurs = flock(fd, LOCK_EX | LOCK_NB) == 0 && ioctl(fd, TIOCEXCL) == 0;
     if (!isOurs || tcsetattr(fd, TCSANOW, &settings) != 0) {
         const std::string why =

@@ -177,8 +177,8 @@ void HidBridgeDevice::takeAnswer(const BridgeAnswer& answer) noexcept
     ++seen_.good;
 }
 
-/// Returns by how much the command of that number is older than the newest that was sent [s]; infinity if it is none of the
-/// last, as where another program drives the device. A device that never told the number of ours is not judged.
+/// Returns by how much the command of that number is older than the newest that was sent [s]; infinity if it is none of
+/// the last, as where another program drives the device. A device that never told the number of ours is not judged.
 double HidBridgeDevice::behind(std::uint16_t command) noexcept
 {
     const bool isOurs = std::uint16_t(sent_ - command) < std::min(written_, sentAt_.size());
@@ -335,7 +335,8 @@ void HidBridgeDevice::readInbox(double now) noexcept
     seenSilenced_ = inbox.silenced;
     if (!started_) lastAnswer_ = now; // silence before the first read() does not count
     if (inbox.good == seenGood_) {
-        // The governor stops for good where more than kMissed are missed: after kSilence, not after a pause of the system.
+        // The governor stops for good where more than kMissed are missed: after kSilence, not after a pause of the
+        // system.
         ++readsWithout_;
         state_.missed = std::min(readsWithout_, int(kMissed * std::clamp((now - lastAnswer_) / kSilence, 0.0, 2.0)));
         return;

@@ -26,11 +26,11 @@ struct HidBridgeSettings {
 
 /// A device that speaks the bridge's report: position in, force out, at up to 1 kHz.
 ///
-/// render() leaves a command in one three-slot hand-off, read() takes the newest answer from another; the driver's thread
-/// does the reading and writing. Force flows only while the device is homed and there is no fault: every other command
-/// has zero force and motors off. Where the driver has a thread, a force that render() does not renew is held for 5
-/// ms and falls to zero in 20 ms more; then, and on close, several zero commands are sent. The last safeguard is the
-/// device's own watchdog.
+/// render() leaves a command in one three-slot hand-off, read() takes the newest answer from another; the driver's
+/// thread does the reading and writing. Force flows only while the device is homed and there is no fault: every other
+/// command has zero force and motors off. Where the driver has a thread, a force that render() does not renew is held
+/// for 5 ms and falls to zero in 20 ms more; then, and on close, several zero commands are sent. The last safeguard is
+/// the device's own watchdog.
 ///
 /// A fault is shown while its cause lasts; only "unplugged" stays until close().
 /// \thread see HapticDevice

@@ -83,7 +83,8 @@ public:
         if (node_ < 0)
             throw HidRefused(path_ + " cannot be opened by its guardian process: " + std::strerror(errno),
                              "plug it in anew, and list the devices again");
-        // Two programs would drive it in turns: it takes the newer numbers, and the other's force comes back all at once.
+        // Two programs would drive it in turns: it takes the newer numbers, and the other's force comes back all at
+        // once.
         if (::flock(node_, LOCK_EX | LOCK_NB) != 0)
             throw HidRefused(path_ + " is driven by another program", "end that one first");
         guardian_.emplace(Guardian::Line{.fd = node_}, rule, path_);

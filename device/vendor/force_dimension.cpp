@@ -200,8 +200,8 @@ void ForceDimensionLine::open(HapticDeviceInfo& info)
     std::this_thread::sleep_for(std::chrono::duration<double>(kSettle));
 }
 
-/// Lets go of the brakes and switches the motors on. Only for an arm that knows where it is: the compensation of gravity
-/// pushes by what the encoders say.
+/// Lets go of the brakes and switches the motors on. Only for an arm that knows where it is: the compensation of
+/// gravity pushes by what the encoders say.
 bool ForceDimensionLine::switchOn() noexcept
 {
     const auto id = char(device_.id);
@@ -245,7 +245,8 @@ int ForceDimensionLine::readHand(LineSample& sample) noexcept
 }
 
 /// Reads what the device says of itself. Its motors go on once it knows where its arm is. A force that it has switched
-/// off by itself is switched on again once it was asked for none for a while; one that somebody has switched off is not.
+/// off by itself is switched on again once it was asked for none for a while; one that somebody has switched off is
+/// not.
 /// \return false if it says nothing
 bool ForceDimensionLine::readStatus(const LineOrder& order, LineSample& sample) noexcept
 {

@@ -227,8 +227,8 @@ void OpenHapticsLine::readHand(LineSample& sample) noexcept
     sample.orientation = glm::quat_cast(turn);
 }
 
-/// Takes all errors that the library has kept, and returns the worst; 0 if there is none. It gives one at each call, and
-/// several may come between two exchanges.
+/// Takes all errors that the library has kept, and returns the worst; 0 if there is none. It gives one at each call,
+/// and several may come between two exchanges.
 unsigned OpenHapticsLine::worstError() noexcept
 {
     constexpr int kMostKept = 100; // a library that never says that there are no more must not hold the exchange

@@ -102,7 +102,8 @@ palpate_answer answerOf(palpate_session& session, double time, const palpate_han
     return own;
 }
 
-/// Returns true if there is something else to draw than last time: another patch, or the one from before without its force.
+/// Returns true if there is something else to draw than last time: another patch, or the one from before without its
+/// force.
 bool takeDent(palpate_session& session, double force)
 {
     const bool isNew = session.session.takePatch(), letGo = force == 0 && session.shownForce != 0;

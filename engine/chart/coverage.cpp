@@ -25,7 +25,8 @@ NodeField distanceToPoints(const PatchWindow& window, std::span<const ChartPoint
     return distance;
 }
 
-/// Returns how deep each node lies in the union of discs about the points, up to some depth; infinity where it is deeper.
+/// Returns how deep each node lies in the union of discs about the points, up to some depth; infinity where it is
+/// deeper.
 ///
 /// A node outside, e from that union, has no part of it within e, so that it is no deeper at any other node than their
 /// distance less e; the best of those around gives the depth.

@@ -283,7 +283,8 @@ struct Along {
     std::array<double, 4> weights{};
 };
 
-/// Returns the weights of cubic interpolation through values and central slopes; at the ends the curve goes on straight.
+/// Returns the weights of cubic interpolation through values and central slopes; at the ends the curve goes on
+/// straight.
 /// \param t  place along the lattice, 0 to side - 1 [lattice spacings]
 Along alongAt(double t, int side)
 {
@@ -341,9 +342,10 @@ double rungOf(double radius) noexcept
     return std::log(radius / kRung) / std::log(kRungs);
 }
 
-// Heights less K(a, a) |K a|^2 / 8, which a sphere and a cylinder have beyond a quadric, were tried: fits of up to 0.9 of their
-// radius are right to 1 % then, in place of 17 and 10 % too strong. But at the tip of an ellipsoid, whose curvature falls away
-// from it, that error makes up for part of the other one: of 1500 points (60, 45, 35 mm) it went from -5 to -13 %.
+// Heights less K(a, a) |K a|^2 / 8, which a sphere and a cylinder have beyond a quadric, were tried: fits of up to 0.9
+// of their radius are right to 1 % then, in place of 17 and 10 % too strong. But at the tip of an ellipsoid, whose
+// curvature falls away from it, that error makes up for part of the other one: of 1500 points (60, 45, 35 mm) it went
+// from -5 to -13 %.
 std::optional<LocalCurvature> fitCurvature(const SurfaceSheet& sheet, const glm::dvec3& centre, double radius)
 {
     constexpr double kDiagonal = 1.42; // a point within the radius along the surface and in height is within this [1]
@@ -373,7 +375,8 @@ std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Fr
     PALP_EXPECT(settings.spacing > 0, std::to_string(settings.spacing) + " m between the points");
     const auto wanted = radiusFor(window, frame, sites, settings);
     if (!wanted) return {};
-    // Of what is hardly curved fits would be as wide as may be, and wider than a narrow object, which then decides nothing.
+    // Of what is hardly curved fits would be as wide as may be, and wider than a narrow object, which then decides
+    // nothing.
     for (double radius = *wanted;; radius /= 2) {
         const Lattice lattice = latticeBetween(window, kLattice, frame, sites, radius);
         if (lattice.empty() && radius > kLeastSpacings * settings.spacing) continue;

@@ -26,8 +26,8 @@ inline constexpr double kFitNoiseError = 9.5;
 ///
 /// Points count (1 - r^2 / radius^2)^2, r their distance along the surface, and less the farther they lie from the
 /// quadric (Tukey's weights), so that stray points do not matter. The frame is turned to the fitted normal and the fit
-/// done again. Of noise it keeps an error of about kFitNoiseError noise spacing / radius^3, and of the shape's own change one that
-/// grows as radius^2: 4 % of an ellipsoid of half axes 60, 45, 35 mm at 20 mm.
+/// done again. Of noise it keeps an error of about kFitNoiseError noise spacing / radius^3, and of the shape's own
+/// change one that grows as radius^2: 4 % of an ellipsoid of half axes 60, 45, 35 mm at 20 mm.
 /// \param centre  on or near the surface [m]
 /// \return empty if the points determine no quadric
 [[nodiscard]] std::optional<LocalCurvature> fitCurvature(const SurfaceSheet& sheet, const glm::dvec3& centre,
@@ -40,7 +40,8 @@ struct CurvatureSettings {
     double lengthRoot = 0; ///< length over which a shell of curvature k feels its edge, times sqrt k [m^(1/2)]
 };
 
-/// The curvature tensor of the surface at the nodes of a window, in the chart's axes, > 0 where it bulges to the finger.
+/// The curvature tensor of the surface at the nodes of a window, in the chart's axes, > 0 where it bulges to the
+/// finger.
 struct CurvatureField {
     NodeField x, z, xz;   ///< [1/m]
     double    radius = 0; ///< of the fits [m]
@@ -59,8 +60,8 @@ enum class FitsFor { field, survey };
 /// Returns the fits of one rung in and around a window.
 using CurvatureSites = std::function<std::vector<CurvatureSite>(int rung, FitsFor what)>;
 
-/// Returns the radius of a rung of the ladder of radii [m]. Fits are made with these alone, so that those of other windows
-/// can be taken; a window asks for the two rungs about its own radius.
+/// Returns the radius of a rung of the ladder of radii [m]. Fits are made with these alone, so that those of other
+/// windows can be taken; a window asks for the two rungs about its own radius.
 [[nodiscard]] double rungRadius(int rung) noexcept;
 
 /// Returns where a radius [m] is on the ladder, between two rungs.
@@ -68,11 +69,12 @@ using CurvatureSites = std::function<std::vector<CurvatureSite>(int rung, FitsFo
 
 /// Finds the curvature at the nodes of a window from fits at sites that do not depend on where the window lies.
 ///
-/// The fits of a window have one radius: as small as noise permits, which may change the tensor by 2.5 % of what is typical
-/// in the window, but not below the length of a shell of that curvature, beyond which detail is not felt, nor above half
-/// the smallest radius of curvature. Two rungs are blended to it, so that it changes smoothly as the window moves; so does
-/// the field of a rung, linear regression over the sites within a radius. The tensors are turned into the chart by carrying
-/// its axes along the shortest arc to each normal. Beyond the border of the surface that of the border goes on.
+/// The fits of a window have one radius: as small as noise permits, which may change the tensor by 2.5 % of what is
+/// typical in the window, but not below the length of a shell of that curvature, beyond which detail is not felt, nor
+/// above half the smallest radius of curvature. Two rungs are blended to it, so that it changes smoothly as the window
+/// moves; so does the field of a rung, linear regression over the sites within a radius. The tensors are turned into
+/// the chart by carrying its axes along the shortest arc to each normal. Beyond the border of the surface that of the
+/// border goes on.
 /// \return empty if nowhere in the window the points determine a quadric
 /// \thread as `sites`
 [[nodiscard]] std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Frame& frame,

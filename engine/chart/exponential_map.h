@@ -32,8 +32,8 @@ inline constexpr double kEverywhere = std::numeric_limits<double>::infinity();
 /// \param normals    [1] unit, with signs that agree along the surface; one for each point
 /// \param steps      [m] longest edge at each point, finite, >= 0; two local spacings suit
 /// \param reach      [m] largest distance from the origin
-/// \param careful    [m] half side of the square about the origin outside of which a point takes the first prediction that
-///                   it gets from there, without the mean of all: enough for what only moves along
+/// \param careful    [m] half side of the square about the origin outside of which a point takes the first prediction
+///                   that it gets from there, without the mean of all: enough for what only moves along
 /// \return one position [m] for each point, empty where the search did not come within the reach. The same bits for the
 ///         same points in any order, unless two are equally far
 /// \throws ContractViolation naming the first argument that is not as above

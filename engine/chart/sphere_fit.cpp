@@ -24,8 +24,8 @@ using Vector5 = Eigen::Matrix<double, 5, 1>;
 // Order of the unknowns. Position is first, so that the leading 3x3 block of R is the factor of the positions alone.
 enum Column { kX, kY, kZ, kSquare, kOne };
 
-// The same about an anchor, where there is no constant. The square is first, so that the trailing 3x3 block of R is what
-// is left of the positions once the best coefficient of the square is put in.
+// The same about an anchor, where there is no constant. The square is first, so that the trailing 3x3 block of R is
+// what is left of the positions once the best coefficient of the square is put in.
 enum AnchoredColumn { kAnchoredSquare, kAnchoredX, kAnchoredY, kAnchoredZ };
 
 // Number of rounding units by which a row of the scaled design may be off, when the coordinates are right to half a

@@ -41,20 +41,20 @@ struct CloudQuality {
     [[nodiscard]] double pointsUnder(double radius) const noexcept;
 };
 
-/// The free angle from which on a point is at a border or beside a hole [degrees]. Of the 28 points in the neighbourhood
-/// of a random sheet, one neighbourhood in 2000 leaves as much by chance; a straight border leaves 180.
+/// The free angle from which on a point is at a border or beside a hole [degrees]. Of the 28 points in the
+/// neighbourhood of a random sheet, one neighbourhood in 2000 leaves as much by chance; a straight border leaves 180.
 inline constexpr double kFreeAngle = 120;
 
 /// Measures an object.
 ///
 /// A point is at a border if its neighbours, seen along its normal, leave an angle of more than kFreeAngle free. Its
-/// neighbours are the points within three spacings, its own or theirs, so that a step in density is no border; the other
-/// side of a thin body does not count. Beside a round hole the free angle shows from a radius of three spacings on; smaller
-/// ones are bridged by the touch too.
+/// neighbours are the points within three spacings, its own or theirs, so that a step in density is no border; the
+/// other side of a thin body does not count. Beside a round hole the free angle shows from a radius of three spacings
+/// on; smaller ones are bridged by the touch too.
 /// A point lies in a line if its two nearest points lie on a line through it and much closer than the spacing. The
 /// spacing of lines is about half of the distance between them: see SurfaceSurvey.
-/// Depth has steps where one coordinate takes few values, not much closer than the points are, and points that face along
-/// it are taken for the faces of thin bodies.
+/// Depth has steps where one coordinate takes few values, not much closer than the points are, and points that face
+/// along it are taken for the faces of thin bodies.
 /// \thread pure; on all cores: about 2 us of one core a point
 [[nodiscard]] CloudQuality cloudQuality(const SoftObject& object);
 

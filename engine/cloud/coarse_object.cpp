@@ -32,7 +32,8 @@ struct CoarseObject::Cubes {
     }
 
 private:
-    /// Adds a coarse point for the points of a cube that face the same way as the first, and one for those that face away.
+    /// Adds a coarse point for the points of a cube that face the same way as the first, and one for those that face
+    /// away.
     void addCube(const SoftObject& dense, std::span<const std::uint32_t> cube)
     {
         const SurfaceSurvey& survey = dense.survey();
@@ -78,7 +79,7 @@ CoarseObject::CoarseObject(const CoarseObject& shape, const SoftObject& dense)
                   .withMaterial(dense.material())
                   .withFoundation(meansOf(dense.foundationShape()))
                   .withStiffening(meansOf(dense.stiffening(), false))
-              .withHeld(meansOf(dense.held(), false)))
+                  .withHeld(meansOf(dense.held(), false)))
 {
 }
 

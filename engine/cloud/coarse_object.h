@@ -9,17 +9,18 @@
 
 namespace palp {
 
-/// A dense object by fewer points: one for those of each cube, on either side of a thin body, at their mean position with
-/// the mean of their logarithmic stiffness, of how it grows with depth, and of the foundation below them. A touch that asks for no finer detail then costs the same however dense the
-/// object is.
+/// A dense object by fewer points: one for those of each cube, on either side of a thin body, at their mean position
+/// with the mean of their logarithmic stiffness, of how it grows with depth, and of the foundation below them. A touch
+/// that asks for no finer detail then costs the same however dense the object is.
 /// \thread immutable, so free to share
 class CoarseObject {
 public:
-    /// \param side  of the cubes [m], > 0; taken to the nearest power of two of the index's cells, so to a factor of 1.42
+    /// \param side  of the cubes [m], > 0; taken to the nearest power of two of the index's cells, so to a factor of
+    ///              1.42
     CoarseObject(const SoftObject& dense, double side);
 
-    /// Makes that of an object of the same points with other stiffnesses or another material: positions, index and survey
-    /// are shared.
+    /// Makes that of an object of the same points with other stiffnesses or another material: positions, index and
+    /// survey are shared.
     CoarseObject(const CoarseObject& shape, const SoftObject& dense);
 
     [[nodiscard]] const SoftObject& object() const noexcept { return object_; }

@@ -22,7 +22,8 @@ struct LocalCurvature {
 /// touched: so neighbouring patches agree, and a hand that slides on has little left to fit.
 /// \thread any, under the mutex
 struct CurvatureNotes {
-    /// Fits of one radius, at points spread evenly over the object. All of this is by rank along the curve of the index.
+    /// Fits of one radius, at points spread evenly over the object. All of this is by rank along the curve of the
+    /// index.
     struct Level {
         std::vector<bool>                        isSite;
         std::unordered_map<std::uint32_t, float> share; ///< points that each site stands for [1]

@@ -11,9 +11,9 @@ namespace palp {
 /// Turns triangles round until neighbours face the same way.
 ///
 /// Two triangles that share an edge, and share it with no third, pass along it in opposite directions if they face the
-/// same way. Of triangles that hang together over such edges those with the smaller part of the area are turned, so that
-/// a mesh without flipped triangles keeps all of its bits; of equal parts the first triangle stays. A surface with one
-/// side only, such as a Moebius strip, keeps a seam.
+/// same way. Of triangles that hang together over such edges those with the smaller part of the area are turned, so
+/// that a mesh without flipped triangles keeps all of its bits; of equal parts the first triangle stays. A surface with
+/// one side only, such as a Moebius strip, keeps a seam.
 /// \param faces      of differing corners; turned by exchanging the last two
 /// \param positions  of the corners [m]
 /// \return the number of triangles that were turned

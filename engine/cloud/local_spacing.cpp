@@ -26,14 +26,14 @@ constexpr double kLikelyReach = 1.6;
 /// Radius of the median over the point's own first guess [1]: 28 points of a regular sheet.
 constexpr double kMedianReach = 3;
 
-/// Points that follow the one of a median along the curve share it: this many, within its guess, with a guess like it [1].
-/// Their own medians would be over nearly the same points.
+/// Points that follow the one of a median along the curve share it: this many, within its guess, with a guess like it
+/// [1]. Their own medians would be over nearly the same points.
 constexpr std::size_t kSharing = 8;
 constexpr double      kLike    = 1.6;
 
 /// A point this many times further from its neighbours than they are among themselves [1] is a stray, or belongs to the
-/// sparse side of a step in density; a random sheet has none, also at its corners. A stray takes the others' spacing, or
-/// its ball would reach them and hold every hand; on a sparse side the area decides and not the number of points.
+/// sparse side of a step in density; a random sheet has none, also at its corners. A stray takes the others' spacing,
+/// or its ball would reach them and hold every hand; on a sparse side the area decides and not the number of points.
 constexpr double kAlone = 3;
 
 /// Share of the disc around such a point that the others' areas cover if it lies among them [1]. Just outside a dense
@@ -44,12 +44,12 @@ constexpr double kCovered = 0.6;
 constexpr std::size_t kFewStrays = 3;
 constexpr double      kCompany   = 2.5; ///< they are at most this many times closer to their neighbours [1]
 
-/// As many or fewer may lie in a plane by chance [1]. They are a surface if the dense points beside them lie in it too: those
-/// of a narrow sparse strip do.
+/// As many or fewer may lie in a plane by chance [1]. They are a surface if the dense points beside them lie in it too:
+/// those of a narrow sparse strip do.
 constexpr std::size_t kByChance = 9;
 
-/// Points are strays if they deviate from the best plane by more than this [their spacings]: they lie in the air every way.
-/// The second one holds where no dense side is near, so that all of a rough surface would be lost.
+/// Points are strays if they deviate from the best plane by more than this [their spacings]: they lie in the air every
+/// way. The second one holds where no dense side is near, so that all of a rough surface would be lost.
 constexpr double kScatter = 0.15, kSureScatter = 0.5;
 
 /// They are a surface after all if it goes on: this share of them stands among its like and scatters less [1].
@@ -79,8 +79,8 @@ double medianOfArea(std::vector<double>& values, double radius)
     return values.back();
 }
 
-/// Returns the seventh smallest squared distance [m^2] of at least seven. Each passes along the seven least so far, which
-/// has no branch to foresee: of some fifteen it takes less than half the time of std::nth_element.
+/// Returns the seventh smallest squared distance [m^2] of at least seven. Each passes along the seven least so far,
+/// which has no branch to foresee: of some fifteen it takes less than half the time of std::nth_element.
 double seventhSquare(std::span<const NearCandidate> near)
 {
     std::array<double, kNeighbours + 1> least; // ascending

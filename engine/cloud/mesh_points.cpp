@@ -31,9 +31,9 @@ constexpr double kOpposite = -0.5, kOneSheet = 0.02;
 /// Least distance over the diagonal of the mesh [1], so that the numbers of cells fit into 20 bits.
 constexpr double kLeastDistance = 0x1p-20;
 
-/// Most distances in a row along the longest edges of thin triangles: over `most`, or for each triangle of the mesh [1]. On a
-/// fine tube they cost as much as points do, on slivers that lie one on the other ten times as much: half a minute in all, as
-/// long as the most points take.
+/// Most distances in a row along the longest edges of thin triangles: over `most`, or for each triangle of the mesh
+/// [1]. On a fine tube they cost as much as points do, on slivers that lie one on the other ten times as much: half a
+/// minute in all, as long as the most points take.
 constexpr double kMostAlongThin = 0.2, kAlongEach = 50;
 
 /// Area of a triangle over its longest edge times the distance from which on it is none of the thin ones [1].

@@ -52,14 +52,15 @@ struct MeshPoints {
 /// \source Ebeida, Mitchell, Patney, Davidson & Owens 2012, "A simple algorithm for maximal Poisson-disk sampling in
 ///         high dimensions"; on meshes Corsini, Cignoni & Scopigno 2012, "Efficient and flexible sampling with blue
 ///         noise properties of triangular meshes"
-/// \differs no darts are thrown over the mesh as a whole: each triangle is halved, in the order of space, until one disc
+/// \differs no darts are thrown over the mesh as a whole: each triangle is halved, in the order of space, until one
+/// disc
 ///          covers a part; parts smaller than a disc get a dart each. Memory is then read in order, and the sets are a
 ///          little denser than random ones: about 0.76 points on distance^2 instead of 0.70
 [[nodiscard]] MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
                                      const ScatterSettings& settings);
 
-/// Returns the distance that scatterOver() begins with [m]: the one that is asked for, or a larger one, so that neither a large
-/// surface nor a few kilobytes of long thin triangles take hours.
+/// Returns the distance that scatterOver() begins with [m]: the one that is asked for, or a larger one, so that neither
+/// a large surface nor a few kilobytes of long thin triangles take hours.
 [[nodiscard]] double scatterDistance(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
                                      const ScatterSettings& settings);
 

@@ -41,21 +41,22 @@ public:
 
     [[nodiscard]] std::size_t size() const noexcept;
 
-    // What is asked about every point is asked along the curve, where neighbours follow each other: what one search reads
-    // is then in the cache for the next. A point's number along it is its rank.
+    // What is asked about every point is asked along the curve, where neighbours follow each other: what one search
+    // reads is then in the cache for the next. A point's number along it is its rank.
 
     [[nodiscard]] std::vector<std::uint32_t>  pointsByRank() const;             ///< which point has each rank
     [[nodiscard]] std::span<const glm::dvec3> positionsByRank() const noexcept; ///< [m]; lives as long as the index
 
-    /// Returns the ranks at which the points of another cube begin, and the number of points: those of a cube follow each
-    /// other. A stray far from all others has a cube of its own.
+    /// Returns the ranks at which the points of another cube begin, and the number of points: those of a cube follow
+    /// each other. A stray far from all others has a cube of its own.
     /// \param side  [m] about that of the cubes, which is a power of two times that of the finest, to a factor of 1.42
     [[nodiscard]] std::vector<std::uint32_t> cubes(double side) const;
 
     /// Does what gather() does, with ranks in place of points.
     void gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
 
-    /// Does the same, in rising order: what is read of hundreds of thousands of points then comes from memory in order too.
+    /// Does the same, in rising order: what is read of hundreds of thousands of points then comes from memory in order
+    /// too.
     void gatherRising(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
 
     /// Replaces `points` by those that have the ranks.

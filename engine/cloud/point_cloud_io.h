@@ -111,12 +111,12 @@ struct LoadedCloud {
 /// PLY: ascii and both binary orders, every scalar type. Lists vertex_indices or vertex_index of an element face become
 /// triangles; other elements and lists are checked and skipped.
 /// PCD: ascii, binary and binary_compressed; fields with COUNT > 1 are skipped, and points with NaN, which is its sign
-/// for "no return", are omitted and counted. Bytes after the last row of a binary PLY or PCD file are a warning. Text: one point per line, `x y z [stiffness]` or named by
-/// a header line or by `columns`. Quality, confidence and intensity never become stiffness unless the user names them.
-/// A property "stiffening" is b [1/m] of each point, from 0 to kMostStiffening; "foundation" is that below it [Pa/m], and "held"
-/// is 1 where something holds it and 0 where it is free.
-/// Points at exactly the same place become one, in the place of the first, with the mean of the logarithms of their
-/// stiffness; faces then name that one. The place must not be the only one.
+/// for "no return", are omitted and counted. Bytes after the last row of a binary PLY or PCD file are a warning. Text:
+/// one point per line, `x y z [stiffness]` or named by a header line or by `columns`. Quality, confidence and intensity
+/// never become stiffness unless the user names them. A property "stiffening" is b [1/m] of each point, from 0 to
+/// kMostStiffening; "foundation" is that below it [Pa/m], and "held" is 1 where something holds it and 0 where it is
+/// free. Points at exactly the same place become one, in the place of the first, with the mean of the logarithms of
+/// their stiffness; faces then name that one. The place must not be the only one.
 /// \throws Error naming the file, the line or byte, what was expected and what was found
 [[nodiscard]] LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings& settings = {});
 

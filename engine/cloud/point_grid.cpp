@@ -7,7 +7,8 @@
 namespace palp {
 namespace {
 
-/// Returns how many cubes along a side the points of a disc need, of two spacings each; a sphere's need a third of that.
+/// Returns how many cubes along a side the points of a disc need, of two spacings each; a sphere's need a third of
+/// that.
 int alongFor(std::size_t points)
 {
     constexpr double kFewest = 32, kMost = 128;

@@ -19,8 +19,8 @@ public:
     /// Sorts the places into cubes.
     /// \param places  finite [m], at least one
     /// \param edge    of the cubes [m], >= 0; they are larger if they were too many. The radius of the searches suits.
-    /// \param mostAlong  most cubes along the longest side; where it is 0 as many as the points need that lie on a surface:
-    ///                   more cost more to clear than they save
+    /// \param mostAlong  most cubes along the longest side; where it is 0 as many as the points need that lie on a
+    ///                   surface: more cost more to clear than they save
     void build(std::span<const glm::dvec3> places, double edge, int mostAlong = 0);
 
     /// Calls visit(index of the place, squared distance [m^2]) for the places within `radius` [m] of `place`, in an

@@ -19,8 +19,8 @@ class SurfaceLinks;
 /// A touched object: points with a stiffness, the index over them, perhaps a mesh, and the material of the sheet.
 ///
 /// Nothing of it changes while it is touched; a touch returns its deformation as a field beside the object. Copies,
-/// repainted(), withMaterial(), withFoundation(), withStiffening() and withHeld() share positions, index, survey, faces and mesh: of
-/// a million points only the stiffness is copied.
+/// repainted(), withMaterial(), withFoundation(), withStiffening() and withHeld() share positions, index, survey, faces
+/// and mesh: of a million points only the stiffness is copied.
 /// It may be moved and copied freely, because the index holds its own copy of the positions.
 /// \thread immutable, so free to share
 class SoftObject {
@@ -64,16 +64,17 @@ public:
     [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return cloud_.positions(); } ///< [m]
     [[nodiscard]] double                      spacing() const noexcept { return index_->spacing(); }    ///< [m]
 
-    /// Returns the object by one point per cube of about this side [m], which is made at the first call; see CoarseObject.
+    /// Returns the object by one point per cube of about this side [m], which is made at the first call; see
+    /// CoarseObject.
     /// \thread any; the first call for a side takes up to a second for millions of points
     [[nodiscard]] std::shared_ptr<const CoarseObject> coarse(double side) const;
 
-    /// Returns what is known of the curvature of the surface, to be read and added to by whoever fits it; all objects of the
-    /// same points and thickness share it.
+    /// Returns what is known of the curvature of the surface, to be read and added to by whoever fits it; all objects
+    /// of the same points and thickness share it.
     [[nodiscard]] CurvatureNotes& curvatureNotes() const noexcept { return *curvatureNotes_; }
 
-    /// Returns which points a step along the surface leads to, to be found by whoever floods it; all objects of the same
-    /// points share it.
+    /// Returns which points a step along the surface leads to, to be found by whoever floods it; all objects of the
+    /// same points share it.
     [[nodiscard]] SurfaceLinks& links() const noexcept { return *links_; }
 
     /// Returns what withFoundation() took [1]; empty: the foundation is the same everywhere.

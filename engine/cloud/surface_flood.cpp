@@ -78,7 +78,8 @@ void SurfaceFlood::noteSide(std::size_t reached)
 /// Floods along the steps that are known of the object.
 void SurfaceFlood::floodByLinks()
 {
-    // Of all points of the object: 0 outside of the ball, else twice its number there and 2, and 1 more once it is reached.
+    // Of all points of the object: 0 outside of the ball, else twice its number there and 2, and 1 more once it is
+    // reached.
     static thread_local std::vector<std::uint32_t> slots;
     if (slots.size() < object_.size()) slots.resize(object_.size(), 0);
     struct Emptied { // also where an exception ends the flood
@@ -102,8 +103,8 @@ void SurfaceFlood::floodByLinks()
         return true;
     };
     slots[ranks_[reached_.front()]] |= 1;
-    // A point takes the sign that most of the points before it ask for, unless its side is known: about an edge, or on the
-    // wall of a thin body, the one that came first may have a normal that says little.
+    // A point takes the sign that most of the points before it ask for, unless its side is known: about an edge, or on
+    // the wall of a thin body, the one that came first may have a normal that says little.
     std::vector<bool> settled(ranks_.size());
     const auto        settle = [&](std::uint32_t i) {
         double sum = 0;

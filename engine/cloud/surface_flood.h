@@ -36,15 +36,16 @@ public:
     [[nodiscard]] std::span<const std::uint32_t> reach(const glm::dvec3& centre, double radius,
                                                        const std::optional<glm::dvec3>& outward = {});
 
-    /// Does the same for a ball whose points are known, and returns their numbers among them. Valid until the next call.
+    /// Does the same for a ball whose points are known, and returns their numbers among them. Valid until the next
+    /// call.
     /// \param ranks    of points of the object along its index, in any order; rising ones take least time
     /// \param sparser  their spacing over the object's, where they are a share of its points [1]
     [[nodiscard]] std::span<const std::uint32_t> reachIn(std::span<const std::uint32_t> ranks, const glm::dvec3& centre,
                                                          const std::optional<glm::dvec3>& outward = {},
                                                          double                           sparser = 1);
 
-    /// Returns the normals of the points that the last call found, in the same order, their signs carried from the first one,
-    /// whose normal points along `outward` [1]. A point without a normal has that of the point before it.
+    /// Returns the normals of the points that the last call found, in the same order, their signs carried from the
+    /// first one, whose normal points along `outward` [1]. A point without a normal has that of the point before it.
     [[nodiscard]] std::span<const glm::dvec3> normals() const noexcept { return normals_; }
 
 private:

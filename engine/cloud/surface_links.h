@@ -25,9 +25,9 @@ inline constexpr double kLongestStep = 2;
 [[nodiscard]] bool runsAlongSheet(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& step,
                                   double noise) noexcept;
 
-/// The points that a step of a SurfaceFlood leads to from each point of an object. They depend on the points alone; they are
-/// found where a flood comes for the first time, and kept: a hand that slides on has little left to find. Some 60 bytes
-/// for each point that was ever in reach.
+/// The points that a step of a SurfaceFlood leads to from each point of an object. They depend on the points alone;
+/// they are found where a flood comes for the first time, and kept: a hand that slides on has little left to find. Some
+/// 60 bytes for each point that was ever in reach.
 /// \thread any
 class SurfaceLinks {
 public:
@@ -38,9 +38,9 @@ public:
     /// \param ranks  along the curve of the index
     void prepare(std::span<const std::uint32_t> ranks);
 
-    /// Returns the ranks that steps lead to from a point that the calling thread has prepared. A step between a point and
-    /// one of half as dense a neighbourhood or less may stand at the latter alone. A point without a normal has all that
-    /// are near enough.
+    /// Returns the ranks that steps lead to from a point that the calling thread has prepared. A step between a point
+    /// and one of half as dense a neighbourhood or less may stand at the latter alone. A point without a normal has all
+    /// that are near enough.
     [[nodiscard]] std::span<const std::uint32_t> from(std::uint32_t rank) const noexcept;
 
 private:

@@ -61,8 +61,8 @@ constexpr double kSettledOnFace = 1.15;
 /// noise has 1.8.
 constexpr double kTwoFaces = 1.6;
 
-/// A ball's deviation is noise if the quietest share of its points deviates from close shapes of their own by no less than
-/// this part of it [1]: by 0.74 of Gaussian noise. About the walls of a clean thin body they deviate by nothing.
+/// A ball's deviation is noise if the quietest share of its points deviates from close shapes of their own by no less
+/// than this part of it [1]: by 0.74 of Gaussian noise. About the walls of a clean thin body they deviate by nothing.
 constexpr double      kQuietShare = 0.2, kOverQuiet = 4;
 constexpr double      kClose  = 2;  ///< radius of those shapes [spacings]
 constexpr std::size_t kAsked  = 32; ///< points of a ball that are asked
@@ -244,9 +244,10 @@ SurfaceSurvey::Measuring::WideShape SurfaceSurvey::Measuring::settledShape(std::
     return {};
 }
 
-/// Returns whether the deviation of the two faces in the ball that was gathered last is that of most of its points. About the
-/// wall of a clean thin body two faces fit well but for the wall, in every wider ball; points off the wall do not deviate.
-/// Some points tell that, in balls too small for both faces. Of a single sheet noise may well end in the middle of a ball.
+/// Returns whether the deviation of the two faces in the ball that was gathered last is that of most of its points.
+/// About the wall of a clean thin body two faces fit well but for the wall, in every wider ball; points off the wall do
+/// not deviate. Some points tell that, in balls too small for both faces. Of a single sheet noise may well end in the
+/// middle of a ball.
 bool SurfaceSurvey::Measuring::isNoiseEverywhere(const WideShape& wide)
 {
     if (!(wide.shape.apart > 0)) return true;

@@ -19,9 +19,9 @@ namespace palp {
 /// the point is `sided`: by a given normal, or because another layer of the object is closer behind it than some
 /// spacings. Elsewhere whoever needs the sign carries it along the surface, as SurfaceFlood does.
 /// Noise: the standard deviation of the points about a local quadric. Where it exceeds a tenth of a spacing the ball
-/// grows until the deviation grows no more: noise has one size, shape grows with the ball. What grows for ever is shape,
-/// and counts as clean. The median over the neighbours settles it. Of a thin body it is that of one face: points of
-/// opposite given normals do not count, and where the deviations in a ball fall into two heaps, the point's own heap
+/// grows until the deviation grows no more: noise has one size, shape grows with the ball. What grows for ever is
+/// shape, and counts as clean. The median over the neighbours settles it. Of a thin body it is that of one face: points
+/// of opposite given normals do not count, and where the deviations in a ball fall into two heaps, the point's own heap
 /// does; noisy faces then have a side as well.
 /// \thread immutable, so free to share
 class SurfaceSurvey {
@@ -44,8 +44,8 @@ public:
     /// Returns whether the side is that of a given normal.
     [[nodiscard]] bool given(std::size_t point) const noexcept { return sided_[ranks_[point]] == kGiven; }
 
-    // The same along the curve of the index: a touch asks about hundreds of thousands of points, and neighbours then lie
-    // side by side in memory.
+    // The same along the curve of the index: a touch asks about hundreds of thousands of points, and neighbours then
+    // lie side by side in memory.
 
     [[nodiscard]] double     spacingOfRank(std::size_t rank) const noexcept { return spacings_[rank]; } ///< [m]
     [[nodiscard]] glm::dvec3 normalOfRank(std::size_t rank) const noexcept

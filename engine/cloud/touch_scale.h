@@ -9,8 +9,8 @@ namespace palp {
 inline constexpr double kNoisySpacings = 0.12;
 
 /// Distance of the averaged points over the standard deviation of the noise [1]: 11 leaves ripples of up to 1 % where a
-/// hand is two spacings deep, 8 leaves 1.3 %. With more noise 7 do, as only a smaller share of it would go for what more
-/// blurs: ripples of up to 1.6 %.
+/// hand is two spacings deep, 8 leaves 1.3 %. With more noise 7 do, as only a smaller share of it would go for what
+/// more blurs: ripples of up to 1.6 %.
 inline constexpr double kTouchScaleOfNoise = 11, kTouchScaleOfMuchNoise = 7;
 
 /// Distance up to which the former holds [spacings]: noise of a third to a half of a spacing.

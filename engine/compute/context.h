@@ -102,9 +102,9 @@ private:
     std::unique_ptr<Handles> handles_;
 };
 
-/// Returns whether a context has ended while its driver still worked on what never finished. A driver in software works on
-/// threads of its own, and crashes if the exit handlers of its libraries run beneath them: a program leaves by std::_Exit()
-/// then.
+/// Returns whether a context has ended while its driver still worked on what never finished. A driver in software works
+/// on threads of its own, and crashes if the exit handlers of its libraries run beneath them: a program leaves by
+/// std::_Exit() then.
 /// \thread any
 [[nodiscard]] bool driverLeftAtWork() noexcept;
 

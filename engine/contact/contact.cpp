@@ -31,8 +31,8 @@ glm::dvec3 awayFromMiddle(const Bounds& bounds, const glm::dvec3& point)
     return glm::normalize(offset / (half * half));
 }
 
-/// Returns the foot of a place on the plane of its nearest point; the point itself where the foot is farther from it than
-/// places between points are, so beyond a rim, or where there is no plane.
+/// Returns the foot of a place on the plane of its nearest point; the point itself where the foot is farther from it
+/// than places between points are, so beyond a rim, or where there is no plane.
 glm::dvec3 footOf(const SoftObject& object, const glm::dvec3& place, const Neighbour& nearest)
 {
     constexpr double     kMost = 1.5; // spacings: of places among random points one in a thousand is farther off [1]

@@ -18,9 +18,9 @@ struct Contact {
     bool felt = false;
 };
 
-/// Finds the touch of a scripted finger: the foot of `place` on the surface, or the nearest point of the object where the
-/// foot would lie beside all points, beyond a rim. The foot does not depend on where points happen to lie: beside a wart
-/// the nearest one was felt up to 5 % stiffer or softer.
+/// Finds the touch of a scripted finger: the foot of `place` on the surface, or the nearest point of the object where
+/// the foot would lie beside all points, beyond a rim. The foot does not depend on where points happen to lie: beside a
+/// wart the nearest one was felt up to 5 % stiffer or softer.
 ///
 /// \param place  [m] where the finger goes; at most `reach` from the nearest point
 /// \param from   [1] the side that the finger comes from; empty: away from the middle of the cloud's bounds, a guess

@@ -39,8 +39,8 @@ bool isStrangers(const struct stat& own, const std::filesystem::path& path)
     return (folder.st_mode & S_IWOTH) && own.st_uid != ::geteuid() && own.st_uid != folder.st_uid;
 }
 
-/// Refuses a link of somebody else, which the kernel does not follow either (fs.protected_symlinks) but whoever resolves links
-/// by himself does; and his pipe or device, in which what is written would be lost to us.
+/// Refuses a link of somebody else, which the kernel does not follow either (fs.protected_symlinks) but whoever
+/// resolves links by himself does; and his pipe or device, in which what is written would be lost to us.
 /// \param what  "a link"
 void refuseStrangers(const std::filesystem::path& path, const struct stat& own, const std::filesystem::path& place,
                      const std::string& what)

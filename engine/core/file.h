@@ -10,8 +10,8 @@
 
 namespace palp {
 
-/// A file that is read, in binary. A read that fails, as on a disk with an error, is no end of the file: it throws an Error that
-/// names the path.
+/// A file that is read, in binary. A read that fails, as on a disk with an error, is no end of the file: it throws an
+/// Error that names the path.
 /// \thread one
 class InputFile : public std::istream {
 public:
@@ -50,14 +50,15 @@ private:
 [[nodiscard]] std::uint64_t sizeOfFile(const std::filesystem::path& path);
 
 /// Returns whether there is a file or a folder of that name.
-/// \throws Error naming the path where the system cannot say, as on a server that does not answer: none is no answer then
+/// \throws Error naming the path where the system cannot say, as on a server that does not answer: none is no answer
+///         then
 [[nodiscard]] bool isThere(const std::filesystem::path& path);
 
 /// Returns the sentence of an error of the file system that nobody expected: the path and the reason.
 [[nodiscard]] std::string sentenceOf(const std::filesystem::filesystem_error& error);
 
-/// What a pipe is where a file is expected: read to its end, or refused where nobody means one, as in the folder of a recording,
-/// because a pipe that nobody writes into is waited for without an end.
+/// What a pipe is where a file is expected: read to its end, or refused where nobody means one, as in the folder of a
+/// recording, because a pipe that nobody writes into is waited for without an end.
 enum class Pipes { read, refused };
 
 /// Returns the whole content of a small file.
@@ -69,8 +70,8 @@ enum class Pipes { read, refused };
 
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
 /// After a failure (an exception in `write`, a full disk) an older file at `path` is as it was and no partly written
-/// file remains. The file keeps the permissions of the older one. A link stays a link, and its file is replaced; one that
-/// another user put into a folder where anybody may write, such as /tmp, is refused.
+/// file remains. The file keeps the permissions of the older one. A link stays a link, and its file is replaced; one
+/// that another user put into a folder where anybody may write, such as /tmp, is refused.
 /// \throws Error naming the path and the reason
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
@@ -78,7 +79,8 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
 class FolderLock {
 public:
     /// \param taken  what to say where another process has it, "FOLDER: " stands before it
-    /// \throws Error if another process has it, or there is no such folder; where the file system knows no locks it is given
+    /// \throws Error if another process has it, or there is no such folder; where the file system knows no locks it is
+    ///         given
     FolderLock(const std::filesystem::path& folder, const std::string& taken);
     ~FolderLock();
     FolderLock(const FolderLock&)            = delete;

@@ -18,8 +18,9 @@ constexpr std::size_t kRounding = 16;          // of an allocation of any size, 
 
 constexpr std::string_view kNoValue = " \t\r\n]/"; // what may stand before the first value of a list, or in its place
 
-/// What is read is kept twice until the next text or number begins, in memory that doubles [1]; and if it is no JSON, the
-/// library complains of all that, with eight letters for each control character, which is copied several times [bytes].
+/// What is read is kept twice until the next text or number begins, in memory that doubles [1]; and if it is no JSON,
+/// the library complains of all that, with eight letters for each control character, which is copied several times
+/// [bytes].
 constexpr std::size_t kOfReading = 4, kOfControl = 40;
 
 constexpr std::string_view kTooDeep =
@@ -29,7 +30,8 @@ constexpr std::string_view kTooMuch =
     "objects, texts or numbers of a few bytes that it takes more; is it damaged?";
 static_assert(kDeepestJson == 100 && kMostPerByteOfJson == 8 && kMostBesideJson == std::size_t(8) << 20);
 
-/// Returns the byte behind a text or a comment that begins at `i`, behind the end where it has none; `i` where none begins.
+/// Returns the byte behind a text or a comment that begins at `i`, behind the end where it has none; `i` where none
+/// begins.
 std::size_t behindText(std::string_view json, std::size_t i) noexcept
 {
     constexpr std::string_view kLineEnds("\n\r\0", 3); // as the library has them
@@ -79,8 +81,8 @@ public:
     }
     void take(std::size_t bytes) noexcept { most_ = std::max(most_, taken_ += bytes); }
 
-    /// What the library takes to free all values: it puts them on a stack, level by level and the last ones first, that has
-    /// room for the values of the outermost level, and doubles when it is full [bytes].
+    /// What the library takes to free all values: it puts them on a stack, level by level and the last ones first, that
+    /// has room for the values of the outermost level, and doubles when it is full [bytes].
     [[nodiscard]] std::size_t mostToFree() const noexcept
     {
         std::size_t room = std::max<std::size_t>(ofAll_, 1), most = room * kValue;

@@ -9,8 +9,9 @@ namespace palp {
 /// \return empty, or one sentence that says what was refused and how to allow it
 [[nodiscard]] std::string askForRealTime();
 
-/// Returns for how long the machine has been suspended since it was started [s]: the time that std::chrono::steady_clock
-/// does not count. A thread that is interrupted between two clocks is off by that long. 0 where the system does not say.
+/// Returns for how long the machine has been suspended since it was started [s]: the time that
+/// std::chrono::steady_clock does not count. A thread that is interrupted between two clocks is off by that long. 0
+/// where the system does not say.
 [[nodiscard]] double timeAsleep() noexcept;
 
 /// Tells a loop that its machine was suspended: the hand is elsewhere then, and the loop's own clock has stood still.

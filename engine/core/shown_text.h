@@ -19,8 +19,8 @@ struct Utf8Character {
 /// Returns true for C0, DEL and C1, and for the line separators and the marks that turn the direction of a text.
 [[nodiscard]] bool isControl(std::uint32_t code) noexcept;
 
-/// Returns a text that comes from outside as one line that a terminal and a file of JSON can take: a question mark stands
-/// for each control character, which a terminal would obey, and for each byte that is no UTF-8.
+/// Returns a text that comes from outside as one line that a terminal and a file of JSON can take: a question mark
+/// stands for each control character, which a terminal would obey, and for each byte that is no UTF-8.
 /// \param most  [bytes] if it is longer, its beginning and "..."
 [[nodiscard]] std::string shownText(std::string_view text, std::size_t most = std::string_view::npos);
 

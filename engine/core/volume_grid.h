@@ -55,9 +55,10 @@ public:
     /// Returns the modulus of a homogeneous sheet that bends as the layers along a way do:
     /// 12/h^3 int E(t) (t - t0)^2 dt, where t0 = int E t dt / int E dt is the neutral axis.
     ///
-    /// For a plate it is exact: D = E h^3 / (12 (1 - nu^2)) is then that of the layers. Outer layers count for more than
-    /// inner ones, so no mean of the values alone is right: a hard skin on half the depth of a sheet that is soft by
-    /// contrast makes it bend like 1/8 of the skin, where the arithmetic mean says 1/2 and the geometric one almost 0. A place on the way without a value has that of the nearest one before it, else after it.
+    /// For a plate it is exact: D = E h^3 / (12 (1 - nu^2)) is then that of the layers. Outer layers count for more
+    /// than inner ones, so no mean of the values alone is right: a hard skin on half the depth of a sheet that is soft
+    /// by contrast makes it bend like 1/8 of the skin, where the arithmetic mean says 1/2 and the geometric one almost
+    /// 0. A place on the way without a value has that of the nearest one before it, else after it.
     /// \param inward  of unit length: against the outward normal
     /// \param depth   h, > 0 [m]
     /// \source Timoshenko & Woinowsky-Krieger 1959, "Theory of Plates and Shells", section 3, for layers of one nu

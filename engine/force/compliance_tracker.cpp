@@ -19,7 +19,8 @@ ComplianceTable::Values ComplianceTracker::lookUp(const glm::dvec3& contact) con
         if (const auto guess = first_->at(contact)) return *guess;
     if (table_ && law_ != ComplianceLaw::table) return table_->middle();
     if (const auto place = table_ ? table_->chart.project(contact) : std::nullopt) return table_->at(*place);
-    // The contact is behind the sphere, not finite, or where a law without a table has no site: the last felt value stays.
+    // The contact is behind the sphere, not finite, or where a law without a table has no site: the last felt value
+    // stays.
     return {compliance_.handed - compliance_.offset, contact_.handed - contact_.offset, true,
             table_ && table_->stiffens ? std::optional(stiffening_.handed - stiffening_.offset) : std::nullopt};
 }

@@ -53,8 +53,9 @@ struct LocalCompliance {
 ///
 /// Where a new table disagrees with the old one at the contact, the difference is carried as an offset of ln c, and of
 /// ln k_c, which dies at 1 % per millisecond, or within one period if that is faster. In free space tables change
-/// without: nothing is felt. b, where it varies, goes the same way. Nor does a contact carry an offset that began beyond the reach of its table, or with one
-/// that was not replaced in time: that table was made for another place, and what it says is no value to keep.
+/// without: nothing is felt. b, where it varies, goes the same way. Nor does a contact carry an offset that began
+/// beyond the reach of its table, or with one that was not replaced in time: that table was made for another place, and
+/// what it says is no value to keep.
 ///
 /// A contact that finds no table, or that begins beyond its reach, is answered by the homogeneous law of its place, if
 /// there is one, until its first table comes. Where none comes for a quarter of a second there is no answer: what
@@ -73,8 +74,8 @@ public:
     /// one that is not usable() is not taken.
     [[nodiscard]] std::optional<LocalCompliance> tick(const ComplianceTick& now) noexcept;
 
-    /// Returns what is in use at another place, with the offsets of the last tick: what its slope is taken from. A blend
-    /// and a hold have none.
+    /// Returns what is in use at another place, with the offsets of the last tick: what its slope is taken from. A
+    /// blend and a hold have none.
     [[nodiscard]] std::optional<LocalCompliance> near(const glm::dvec3& place) const noexcept;
 
     [[nodiscard]] double period() const noexcept { return period_; } ///< of the tables, smoothed [s]
@@ -100,7 +101,8 @@ private:
 
     ComplianceLaw         law_;
     const HomogeneousLaw* first_; // may be null
-    /// The table in use, where the deformation thread put it; null: none yet. A copy would cost the servo's tick 2.4 KB.
+    /// The table in use, where the deformation thread put it; null: none yet. A copy would cost the servo's tick 2.4
+    /// KB.
     const ComplianceTable* table_    = nullptr;
     bool                   touching_ = false;
     bool                   fits_     = false;    // the table in use was made for this contact, as far as is known

@@ -31,8 +31,8 @@ struct DepthShape {
 /// up to the depth at which the tangent reaches the cap; from there on F is straight with that slope. b = 0 is the
 /// spring F = K d, to the bit.
 ///
-/// Where the sheet's shape is known the tangent is K s(d) e^{b S(d)}, s the shape and S its integral: at the shape's knots,
-/// at most the cap, and even between them. Force and energy are its integrals, exactly.
+/// Where the sheet's shape is known the tangent is K s(d) e^{b S(d)}, s the shape and S its integral: at the shape's
+/// knots, at most the cap, and even between them. Force and energy are its integrals, exactly.
 ///
 /// Plate and contact stiffen together, by one factor: the dent is that of the load K d, whatever F is.
 /// \source Fung 1967, "Elasticity of soft tissues in simple elongation": the tangent grows in proportion to the force

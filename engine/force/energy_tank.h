@@ -42,9 +42,9 @@ struct EnergyTankOutput {
 };
 
 /// Pays for stiffness that rises under a loaded finger. A contact of depth d stores d^2 K / 2, or what its DepthLaw
-/// says. What the hand changes of it by sliding it pays, or gets, itself through the tangential part of its pull, see LateralLean. What is left comes
-/// from outside: a new table, an offset that dies, a cap that rises. A small store that the arm's damping fills pays
-/// for a rise of that kind; what cannot be paid waits, and the stiffness lags.
+/// says. What the hand changes of it by sliding it pays, or gets, itself through the tangential part of its pull, see
+/// LateralLean. What is left comes from outside: a new table, an offset that dies, a cap that rises. A small store that
+/// the arm's damping fills pays for a rise of that kind; what cannot be paid waits, and the stiffness lags.
 ///
 /// The servo calls it, once a tick, between the force law and the governor:
 ///

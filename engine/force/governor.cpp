@@ -226,8 +226,8 @@ bool ForceGovernor::isJump(double distance, double time) noexcept
     return distance > kSlip + kFastest * std::max(0.0, time);
 }
 
-/// Returns whether the position is not that of the hand that was elsewhere before: a surface that is not there would push it with
-/// all of its force.
+/// Returns whether the position is not that of the hand that was elsewhere before: a surface that is not there would
+/// push it with all of its force.
 bool ForceGovernor::hasJumped(const GovernorInput& in) const noexcept
 {
     if (!hasPosition_ || !in.homed || !finite(in.position)) return false;

@@ -190,10 +190,10 @@ public:
     void reset() noexcept;
 
     /// Returns the most that a force law may render [N/m]: min(maximum, 0.8 ownDamping / lag), with the median of the
-    /// lag over the last 100 ticks. A spring of K with that lag takes K lag of the arm's damping; a released arm settles
-    /// as long as some is left. Where the damping is unknown: min(maximum, statedStiffness 1.5 ms / lag), in which the
-    /// lag is without the age of the answer, because who states a stiffness has measured it with that age. It falls and
-    /// rises at once: pass the result through the tank, which pays for a rise.
+    /// lag over the last 100 ticks. A spring of K with that lag takes K lag of the arm's damping; a released arm
+    /// settles as long as some is left. Where the damping is unknown: min(maximum, statedStiffness 1.5 ms / lag), in
+    /// which the lag is without the age of the answer, because who states a stiffness has measured it with that age. It
+    /// falls and rises at once: pass the result through the tank, which pays for a rise.
     [[nodiscard]] double stiffnessCap() const noexcept { return cap_; }
 
     /// Returns the lag that the cap is for [s].
@@ -202,8 +202,8 @@ public:
     /// Returns what the spring at the cap leaves of the arm's damping [N s/m]; 0 if it is unknown.
     [[nodiscard]] double spareDamping() const noexcept { return usableDamping() - creditedDamping(); }
 
-    /// Returns whether a grip cannot have moved so far in that time: a tracker that lost it, a frame that was moved, a device that
-    /// counts anew.
+    /// Returns whether a grip cannot have moved so far in that time: a tracker that lost it, a frame that was moved, a
+    /// device that counts anew.
     /// \param distance  [m]
     /// \param time      [s]
     [[nodiscard]] static bool isJump(double distance, double time) noexcept;

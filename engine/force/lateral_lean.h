@@ -19,8 +19,8 @@ struct StiffnessSlope {
 ///
 ///     F_s = -(d^2 / 2) grad K / (1 - curvature d)      the foot of a hand below a bulge goes further than the hand
 ///
-/// Without it the way over a lump is not conservative: with every round the hand gains what the lump stores. With it the
-/// lump resists on the way in and pushes on the way out.
+/// Without it the way over a lump is not conservative: with every round the hand gains what the lump stores. With it
+/// the lump resists on the way in and pushes on the way out.
 ///
 /// It is rendered through the proxy: the proxy is given a hand that leans by F_s / K, and the pull goes from the true
 /// hand to that proxy. Then K pull has the tangent F_s where nothing rubs. And friction judges the tangent that a

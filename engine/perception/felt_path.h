@@ -43,8 +43,8 @@ struct FeltPlace {
 struct FeltTick {
     double along     = 0; ///< of the proxy, from the middle [m]
     double stiffness = 0; ///< force on the hand over its depth [N/m]
-    /// The surface keeps the proxy from following the hand, as a wall across the path does: the hand is several times as
-    /// deep as it is meant to be, or the force is limited. What is felt then is no stiffness along the path.
+    /// The surface keeps the proxy from following the hand, as a wall across the path does: the hand is several times
+    /// as deep as it is meant to be, or the force is limited. What is felt then is no stiffness along the path.
     bool held = false;
 };
 
@@ -56,7 +56,8 @@ struct FeltTick {
 /// \throws as runVirtual(), and Error if the hand met nothing
 [[nodiscard]] std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line);
 
-/// Returns the same points with one stiffness for all, the geometric mean, and one b, on an even foundation. A change felt on it is an artefact.
+/// Returns the same points with one stiffness for all, the geometric mean, and one b, on an even foundation. A change
+/// felt on it is an artefact.
 [[nodiscard]] SoftObject homogeneous(const SoftObject& object);
 
 /// The logarithm of the ratio of the stiffest to the softest place [1].

@@ -32,7 +32,8 @@ struct ScenePerception {
     std::array<NoticedSteps, 3> atRest; ///< by kWeberFractions; `floor` is that of places at rest
     std::array<NoticedSteps, 3> sliding;
 
-    /// Returns the share of the strokes in which the surface holds the hand [1]; steps are then not all that is noticed.
+    /// Returns the share of the strokes in which the surface holds the hand [1]; steps are then not all that is
+    /// noticed.
     [[nodiscard]] double held() const { return std::max(heldShare(stroke), heldShare(floor)); }
     [[nodiscard]] bool   floorIsLow() const noexcept { return sliding.front().floor < kMostFloor; }
 };

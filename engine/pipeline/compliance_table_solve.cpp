@@ -119,8 +119,8 @@ ComplianceTable::Entries windowOf(const Shell& shell, double below, const Footpr
     return own;
 }
 
-/// Returns l^-4 of a shell as curved as the object is at a typical place, by its curvature alone [1/m^4]; 0 if that ends no
-/// dents there.
+/// Returns l^-4 of a shell as curved as the object is at a typical place, by its curvature alone [1/m^4]; 0 if that
+/// ends no dents there.
 double curvedAs(const SoftObject& object, PatchSettings settings)
 {
     if (settings.theory != Theory::shell) return 0;

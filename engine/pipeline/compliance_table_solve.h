@@ -58,8 +58,8 @@ struct FootprintLattice {
 ///                     come
 /// \param tolerance    as for the tables themselves: the error that iteration leaves is then taken out too
 /// \param wholeObject  the window spans the object: nothing of a homogeneous window is to be taken out of its tables
-/// \param curved       l^-4 of a shell [1/m^4]: under the ladder's middles it stands for the membrane, because a dome gives
-///                     way as a plate on a foundation of D/l^4 does (Reissner 1946)
+/// \param curved       l^-4 of a shell [1/m^4]: under the ladder's middles it stands for the membrane, because a dome
+///                     gives way as a plate on a foundation of D/l^4 does (Reissner 1946)
 /// \throws Error if a footprint does not lie wholly on the plate
 [[nodiscard]] FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& shape, PlateSolver& solver,
                                             double tolerance, bool wholeObject = false, double curved = 0);
@@ -77,8 +77,8 @@ struct TableSolution {
 /// their c is right to it, see PlateSolver::solveFootprints().
 ///
 /// c(q) = p_q . w_q with A w_q = p_q. A is symmetric, so that dc/dq = 2 (dp_q/dq) . w_q: slopes need no further solve.
-/// k_c(q) is that of the rigidity's geometric mean over the footprint, see rigidityUnder(): at a step of the object it then
-/// changes over the width of a footprint, as c does.
+/// k_c(q) is that of the rigidity's geometric mean over the footprint, see rigidityUnder(): at a step of the object it
+/// then changes over the width of a footprint, as c does.
 /// \throws Error as PlateSolver::solveFootprints()
 [[nodiscard]] TableSolution solveTable(const Plate& plate, const FootprintLattice& lattice, PlateSolver& solver,
                                        double tolerance);
@@ -100,8 +100,8 @@ struct MiddleSolution {
 [[nodiscard]] MiddleSolution solveTable(const Shell& shell, double below, const FootprintLattice& lattice,
                                         PlateSolver& solver, double tolerance, ComplianceTable& table);
 
-/// Returns the geometric mean of a rigidity under a footprint, weighted as the load is [N m]: that from which the stiffness
-/// of the contact follows, and exactly the rigidity where all nodes are alike.
+/// Returns the geometric mean of a rigidity under a footprint, weighted as the load is [N m]: that from which the
+/// stiffness of the contact follows, and exactly the rigidity where all nodes are alike.
 /// \pre the footprint presses somewhere
 [[nodiscard]] double rigidityUnder(const Footprint& footprint, const NodeField& rigidity);
 

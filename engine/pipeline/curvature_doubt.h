@@ -13,27 +13,28 @@ inline constexpr double kMostFitBias = 0.05;
 /// Returns by what share fits read a curvature too strong, because the surface is no quadric so far around [1]:
 /// radius^2 (0.10 k1^2 + 0.06 k1 k2), and without the second part where the surface bends both ways against each other.
 ///
-/// Measured on spheres and cylinders of 100 to 20 000 points, even and random, whose fits reach five spacings: 1.2, 3.4, 4.9,
-/// 9.5, 14 and 25 % at radii of 0.27, 0.45, 0.54, 0.71, 0.82 and 0.98 of a sphere's, and 1.8, 2.7, 5.3, 8.3 and 17 % at 0.42,
-/// 0.51, 0.69, 0.82 and 1.07 of a cylinder's; this is right to 1 % of the curvature up to there, and says too much beyond.
+/// Measured on spheres and cylinders of 100 to 20 000 points, even and random, whose fits reach five spacings: 1.2,
+/// 3.4, 4.9, 9.5, 14 and 25 % at radii of 0.27, 0.45, 0.54, 0.71, 0.82 and 0.98 of a sphere's, and 1.8, 2.7, 5.3, 8.3
+/// and 17 % at 0.42, 0.51, 0.69, 0.82 and 1.07 of a cylinder's; this is right to 1 % of the curvature up to there, and
+/// says too much beyond.
 /// \param radius           of the fits [m]
 /// \param larger, smaller  principal curvatures as they were read [1/m]
 [[nodiscard]] double fitBias(double radius, double larger, double smaller) noexcept;
 
-/// Returns how wide the facets of a mesh are around a place, across the edges at which they meet at 1 to 40 degrees [m]: a
-/// mean by area; 0 if there are none, or the mesh bends nowhere around.
+/// Returns how wide the facets of a mesh are around a place, across the edges at which they meet at 1 to 40 degrees
+/// [m]: a mean by area; 0 if there are none, or the mesh bends nowhere around.
 /// \thread pure; passes over all faces
 [[nodiscard]] double facetWidth(const SurfaceMesh& mesh, const glm::dvec3& place, double reach);
 
 /// Returns, in sentences, why the curvature that a patch bent with may be read wrong: points that are too far apart, or
 /// facets that are wider than its fits. Empty is good, and so is a plate.
 ///
-/// Measured on spheres and cylinders of facets: fits as wide as 1.15 facets and more are right to 5 %, of 0.9 off by -12 to
-/// 3 %, of 0.7 by -3 to 35 %, and of half of one by -73 to 63 %: they find a curvature of none on the facets.
+/// Measured on spheres and cylinders of facets: fits as wide as 1.15 facets and more are right to 5 %, of 0.9 off by
+/// -12 to 3 %, of 0.7 by -3 to 35 %, and of half of one by -73 to 63 %: they find a curvature of none on the facets.
 [[nodiscard]] std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& patch);
 
-/// Returns why the points of an object may be too far apart for its curvature, from places all over it; empty if fewer than
-/// a tenth of them are. Milliseconds, and longer on dense clouds.
+/// Returns why the points of an object may be too far apart for its curvature, from places all over it; empty if fewer
+/// than a tenth of them are. Milliseconds, and longer on dense clouds.
 [[nodiscard]] std::string sparseForCurvature(const SoftObject& object);
 
 } // namespace palp

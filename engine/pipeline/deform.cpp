@@ -227,8 +227,8 @@ double turnedShare(const Patch& patch, const TouchedSurface& surface, const Patc
 /// A surface that lies off the sphere by a share e of the window slopes against it by some 4 e, which shortens lengths
 /// by 8 e^2: 0.3 % at the first bound, 2 % at the second.
 ///
-/// Where a part of the window stands against the sphere by some 50 degrees, as behind a sharp rim, the misfit need not be
-/// large: then that part decides, before it comes to lie over the rest.
+/// Where a part of the window stands against the sphere by some 50 degrees, as behind a sharp rim, the misfit need not
+/// be large: then that part decides, before it comes to lie over the rest.
 double unrolledShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
 {
     if (settings.map != Map::lambertAzimuthal) return 0; // the user has chosen how a sphere is laid flat
@@ -455,7 +455,8 @@ std::pair<double, double> spacingsOf(const Patch& patch, const SoftObject& objec
             sparse ? quantileOfSquares(spacings, 1 - kRest) : patch.spacing};
 }
 
-/// Computes the rigidities of some points [N m]: with nothing but a load and a product for each, many loads are under way.
+/// Computes the rigidities of some points [N m]: with nothing but a load and a product for each, many loads are under
+/// way.
 void rigiditiesOf(const SoftObject& object, std::span<const std::uint32_t> points, std::span<double> rigidities)
 {
     const auto   stiffness = object.cloud().stiffness();

@@ -41,7 +41,8 @@ struct PatchWithTable {
                                              const PatchSettings& settings, const FootprintLattice& lattice,
                                              PlateSolver& solver, const std::optional<Frame>& carried = {});
 
-/// Does the same into a table that is there: the one that the servo will read. It is written if the patch is deformed().
+/// Does the same into a table that is there: the one that the servo will read. It is written if the patch is
+/// deformed().
 [[nodiscard]] Patch deformWithTable(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
                                     const FootprintLattice& lattice, PlateSolver& solver,
                                     const std::optional<Frame>& carried, ComplianceTable& table);
@@ -58,9 +59,9 @@ struct SupportRange {
     double clamped   = 0; ///< held as firmly as can be
 };
 
-/// Touches the same place with supported and with clamped edges on all sides; the window turns as it does for each of them.
-/// Where a surface is curved one way, or both ways against each other, a dent reaches as far as the object does, and its
-/// support decides within this range; where it bulges both
+/// Touches the same place with supported and with clamped edges on all sides; the window turns as it does for each of
+/// them. Where a surface is curved one way, or both ways against each other, a dent reaches as far as the object does,
+/// and its support decides within this range; where it bulges both
 /// ways and the window is some eight lengths wide, both are nearly alike.
 /// \return empty if the settings ask for no shell, or the window spans an object, which has supports of its own
 /// \param object, settings  that the patch was made with

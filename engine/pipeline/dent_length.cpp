@@ -16,8 +16,8 @@
 namespace palp {
 namespace {
 
-/// Radii of curvature to a window's width that sags by kMostSag; and the most that a window has [1]. What bulges both ways is
-/// felt as whole bodies are, to 10 %, in windows that wrap round: see tooDeep() of the warnings.
+/// Radii of curvature to a window's width that sags by kMostSag; and the most that a window has [1]. What bulges both
+/// ways is felt as whole bodies are, to 10 %, in windows that wrap round: see tooDeep() of the warnings.
 constexpr double kShallowRadii = 8 * kMostSag, kMostRadii = 5;
 
 /// How the surface bends about a place.
@@ -43,9 +43,9 @@ double medianOf(std::vector<Weighed> values)
     return values.back().value;
 }
 
-/// Returns the geometric mean of some positive values and so many standard deviations more, but no more than the largest and
-/// no less than the least. It hangs less on single values than a quantile does, and less on which half is the larger than a
-/// median.
+/// Returns the geometric mean of some positive values and so many standard deviations more, but no more than the
+/// largest and no less than the least. It hangs less on single values than a quantile does, and less on which half is
+/// the larger than a median.
 double meanAndDeviations(const std::vector<Weighed>& values, double deviations)
 {
     double all = 0, sum = 0, squares = 0;
@@ -107,8 +107,8 @@ std::vector<std::uint32_t> sampleOf(const SoftObject& object)
     return sample;
 }
 
-/// Returns the length of a dent on the foundation, with the geometric mean of the rigidity so far around the point, and at it
-/// [m].
+/// Returns the length of a dent on the foundation, with the geometric mean of the rigidity so far around the point, and
+/// at it [m].
 double meanLength(const SoftObject& object, const std::vector<std::uint32_t>& sample, std::uint32_t point, double reach,
                   double foundation)
 {
@@ -178,10 +178,11 @@ Asked askedBy(const SoftObject& object, const PatchSettings& settings, const std
     return asked;
 }
 
-/// Returns the width of a square as large as the disc about a place of which the object's surface fills four fifths [m].
+/// Returns the width of a square as large as the disc about a place of which the object's surface fills four fifths
+/// [m].
 ///
-/// Of a sample of points each stands for the area around it, and areas are compared with those near the place, so that it
-/// does not matter whether one face of the object was given or two.
+/// Of a sample of points each stands for the area around it, and areas are compared with those near the place, so that
+/// it does not matter whether one face of the object was given or two.
 /// \param sample  even over the object
 double filledWidth(const SoftObject& object, const std::vector<std::uint32_t>& sample, const glm::dvec3& place)
 {
@@ -206,7 +207,8 @@ double filledWidth(const SoftObject& object, const std::vector<std::uint32_t>& s
     return std::sqrt(std::numbers::pi * (reach > 0 ? reach : near.back().square));
 }
 
-/// Returns the width up to which windows about the places in the object's middle are filled [m]: beside a border none is.
+/// Returns the width up to which windows about the places in the object's middle are filled [m]: beside a border none
+/// is.
 double widthOfObject(const SoftObject& object)
 {
     constexpr std::size_t kEnough = 32;  // places

@@ -7,8 +7,8 @@
 
 namespace palp {
 
-/// Widths of a patch window in lengths of a dent, from which its edges change 1 % or less of what a dome feels [1]; of what
-/// is curved unequally both ways see DentReach.
+/// Widths of a patch window in lengths of a dent, from which its edges change 1 % or less of what a dome feels [1]; of
+/// what is curved unequally both ways see DentReach.
 inline constexpr double kLocalWindow = 8;
 
 /// Cells of a grid that the fingertip's radius spans at least [1]: what is felt is then right to 2 %.
@@ -20,13 +20,15 @@ inline constexpr double kMostSag = 0.25;
 /// Thickness over the smaller radius of curvature up to which a sheet counts as thin [1].
 inline constexpr double kMostThick = 0.1;
 
-/// The lesser principal curvature over the larger up to which a surface counts as curved one way: dents then reach far [1].
+/// The lesser principal curvature over the larger up to which a surface counts as curved one way: dents then reach far
+/// [1].
 inline constexpr double kOneWay = 0.02;
 
 /// The same from which on it surely bulges both ways [1]: bodies down to it were compared with solids.
 inline constexpr double kBothWays = 0.1;
 
-/// Returns the width beyond which the edges of a plate's window on a foundation are not felt, in lengths l = (D/k)^(1/4) [1].
+/// Returns the width beyond which the edges of a plate's window on a foundation are not felt, in lengths l =
+/// (D/k)^(1/4) [1].
 ///
 /// 10 hold the compliance to 0.1 %, and 12 where D varies by more than 10; measured against windows of 24 l for warts.
 /// \param least, most  rigidity [N m]
@@ -43,11 +45,11 @@ inline constexpr double kBothWays = 0.1;
 /// How far a dent reaches about a place of a shell.
 struct DentReach {
     double length = 0; ///< over which it dies away [m]; infinite where neither the shell nor a foundation ends it
-    /// Width of a patch window that it hardly feels the edges of, in these lengths [1]: kLocalWindow, and more where one
-    /// curvature is more than twice the other. Constant curvatures in ratios of 2, 3, 5, 8 and 16 are felt within 4 % of their
-    /// limit of wide windows from 8, 11, 16, 22 and 33 lengths on, the window's corners along the principal directions.
-    /// Without a foundation it is no wider than five of the smallest radii of curvature, and than two where the other one is
-    /// next to nothing.
+    /// Width of a patch window that it hardly feels the edges of, in these lengths [1]: kLocalWindow, and more where
+    /// one curvature is more than twice the other. Constant curvatures in ratios of 2, 3, 5, 8 and 16 are felt within 4
+    /// % of their limit of wide windows from 8, 11, 16, 22 and 33 lengths on, the window's corners along the principal
+    /// directions. Without a foundation it is no wider than five of the smallest radii of curvature, and than two where
+    /// the other one is next to nothing.
     double window = kLocalWindow;
 };
 
@@ -62,8 +64,8 @@ struct DentLengths {
     double window = 0; ///< width of a patch window, one for all of the object, see dentWindow() [m]
 };
 
-/// Finds how far dents reach where the sheet's own stiffness, or what lies below it, ends them, see dentReach(). Places count
-/// by the area around them, so that it does not matter where the points are dense.
+/// Finds how far dents reach where the sheet's own stiffness, or what lies below it, ends them, see dentReach(). Places
+/// count by the area around them, so that it does not matter where the points are dense.
 /// \param settings  the foundation; the membrane counts only where the theory is a shell's
 /// \return empty if at most places nothing ends them: the object's supports, or the window's edges, then decide
 /// \note takes milliseconds, and longer on dense clouds
@@ -82,11 +84,11 @@ struct BeyondShell {
 /// \note as dentLengths()
 [[nodiscard]] BeyondShell beyondShell(const SoftObject& object, const PatchSettings& settings, double window);
 
-/// Returns how wide the patch window of WindowOf::dent is [m]: as nearly all places of the object ask for where dents end by
-/// themselves, but no wider than the object fills in its middle and its cells carry the fingertip, and at least four radii of
-/// it. Where nothing ends a dent it is as the settings say, but of shells no wider than kMostSag allows at most places. What
-/// places ask for is averaged by their area, so that it goes over gradually from the one to the other, and hangs neither on
-/// how the object is turned nor on which of its points are looked at.
+/// Returns how wide the patch window of WindowOf::dent is [m]: as nearly all places of the object ask for where dents
+/// end by themselves, but no wider than the object fills in its middle and its cells carry the fingertip, and at least
+/// four radii of it. Where nothing ends a dent it is as the settings say, but of shells no wider than kMostSag allows
+/// at most places. What places ask for is averaged by their area, so that it goes over gradually from the one to the
+/// other, and hangs neither on how the object is turned nor on which of its points are looked at.
 /// \note as dentLengths()
 [[nodiscard]] double dentWindow(const SoftObject& object, const PatchSettings& settings);
 

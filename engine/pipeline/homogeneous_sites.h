@@ -10,9 +10,9 @@ namespace palp {
 /// and the contact's stiffness.
 ///
 /// To first order c changes with ln D by the bending energy that a place holds, which a load leaves within some
-/// footprints: D is the geometric mean over that reach, FootprintLattice::feltRadius, by area. Over and beside a wart of
-/// ten times the rigidity, 3 mm wide, that is right to 15 %. A shell is as curved everywhere as at a typical place of it.
-/// Points of the other face of a thin body count as well.
+/// footprints: D is the geometric mean over that reach, FootprintLattice::feltRadius, by area. Over and beside a wart
+/// of ten times the rigidity, 3 mm wide, that is right to 15 %. A shell is as curved everywhere as at a typical place
+/// of it. Points of the other face of a thin body count as well.
 /// \thread any; uses all cores, some tenths of a second of one for a million points
 /// \param lattice  of the same object and settings
 [[nodiscard]] HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& lattice);

@@ -153,8 +153,8 @@ void eachMoving(const Patch& patch, std::span<const glm::dvec3> positions,
             visit(patch.points[n], patch.followed[n], patch.pointResponse[n]);
             continue;
         }
-        // A point lies beside its coarse one in the chart as it does on the surface, seen along the chart's normal: they
-        // are at most a cell apart.
+        // A point lies beside its coarse one in the chart as it does on the surface, seen along the chart's normal:
+        // they are at most a cell apart.
         const glm::dvec3 middle = patch.coarse->object().positions()[patch.points[n]];
         const ChartPoint at     = patch.followed[n];
         const bool       inside = patch.window.holds(at);

@@ -88,11 +88,12 @@ struct PatchSettings {
     double        tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
 };
 
-/// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what it
-/// spans. One of a dent is as dentWindow() says; that
-/// takes milliseconds, so settle once before many touches. One of the object is twice as wide as the object is long, so that
-/// it holds all of it about any contact; its cells are as wide as `window` and `cells` say, but no finer than a fourth of the
-/// fingertip; there are 256 to 512, and of shells 256; and its sides, in the void, are free. A second time changes nothing.
+/// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what
+/// it spans. One of a dent is as dentWindow() says; that
+/// takes milliseconds, so settle once before many touches. One of the object is twice as wide as the object is long, so
+/// that it holds all of it about any contact; its cells are as wide as `window` and `cells` say, but no finer than a
+/// fourth of the fingertip; there are 256 to 512, and of shells 256; and its sides, in the void, are free. A second
+/// time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.
@@ -172,12 +173,13 @@ struct Patch {
 /// Returns the sheet's flexural rigidity at the contact [N m].
 [[nodiscard]] double rigidityAtContact(const Patch& patch);
 
-/// Returns the least and the largest rigidity of the sheet at the nodes that the object covers [N m], and how many they are.
+/// Returns the least and the largest rigidity of the sheet at the nodes that the object covers [N m], and how many they
+/// are.
 [[nodiscard]] std::pair<double, double> rigiditiesOfSheet(const Patch& patch);
 [[nodiscard]] std::size_t               nodesOfSheet(const Patch& patch);
 
-/// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where an edge is held
-/// or free.
+/// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where an edge is
+/// held or free.
 [[nodiscard]] double bodyFelt(const Patch& patch) noexcept;
 
 /// Returns the largest deflection per force of the object [m/N]; nodes beyond its border do not count.
@@ -205,8 +207,8 @@ void demandConverged(const Patch& patch);
 /// Returns the same for many places, in a fraction of the time.
 [[nodiscard]] std::vector<double> responsesAt(const Patch& patch, std::span<const ChartPoint> places);
 
-/// Calls visit(point of the cloud, the place in the chart that it follows [m], its deflection per force [m/N]) for every
-/// point that may move.
+/// Calls visit(point of the cloud, the place in the chart that it follows [m], its deflection per force [m/N]) for
+/// every point that may move.
 /// \param positions  [m] of the cloud at rest
 void eachMoving(const Patch& patch, std::span<const glm::dvec3> positions,
                 const std::function<void(std::uint32_t, const ChartPoint&, double)>& visit);

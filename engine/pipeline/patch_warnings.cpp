@@ -16,8 +16,8 @@
 namespace palp {
 namespace {
 
-/// Returns the width beyond which the edges of a patch window on a foundation are not felt [m]; empty without one. D is the
-/// geometric mean over the window.
+/// Returns the width beyond which the edges of a patch window on a foundation are not felt [m]; empty without one. D is
+/// the geometric mean over the window.
 /// \param foundation  of the scene: that of the plate also holds what is held [Pa/m]
 std::optional<double> windowWanted(const Plate& plate, double foundation)
 {
@@ -32,8 +32,8 @@ double largest(const NodeField& field)
     return *std::max_element(field.values().begin(), field.values().end());
 }
 
-/// Returns the largest deflection per force at an edge of the window beyond which points of the touched surface stay [m/N]:
-/// within two spacings, or past those that follow a free edge.
+/// Returns the largest deflection per force at an edge of the window beyond which points of the touched surface stay
+/// [m/N]: within two spacings, or past those that follow a free edge.
 double torn(const Patch& patch)
 {
     const double beside = patch.thickness + 2 * patch.spacing + patch.plate.grid.spacingX;
@@ -55,11 +55,12 @@ std::string withOneDecimal(double value)
 
 /// Says what a window that is too deep may do to the answer.
 ///
-/// A dent of what bulges both ways dies away before it comes where the surface is steep. Whole ellipsoids by CalculiX, touched
-/// in the middle of a side with half axes of 60, 45 and 35 mm, 80 and 30, 60 and 20 mm and 1 and 2 mm thick, are felt 2 to 8 %
-/// too stiff in windows as wide as their dents ask for, which sag up to all of their width, and one of h/R 0.1 10 % too soft;
-/// in windows of a sag of 25 % by up to 37 %. Spheres and tips are felt within 3 % of what narrower windows give.
-/// What is curved one way lets a dent run on: a tube is felt softer by 14 and 56 % in a window that sags 30 and 50 %.
+/// A dent of what bulges both ways dies away before it comes where the surface is steep. Whole ellipsoids by CalculiX,
+/// touched in the middle of a side with half axes of 60, 45 and 35 mm, 80 and 30, 60 and 20 mm and 1 and 2 mm thick,
+/// are felt 2 to 8 % too stiff in windows as wide as their dents ask for, which sag up to all of their width, and one
+/// of h/R 0.1 10 % too soft; in windows of a sag of 25 % by up to 37 %. Spheres and tips are felt within 3 % of what
+/// narrower windows give. What is curved one way lets a dent run on: a tube is felt softer by 14 and 56 % in a window
+/// that sags 30 and 50 %.
 /// \param sag     over the width of the window [1]
 /// \param bulges  both ways
 std::string tooDeep(double sag, bool bulges)
@@ -87,8 +88,8 @@ std::string widerWindow(double width, const PatchSettings& settings)
                                      : "");
 }
 
-/// Returns the stiffness of the membrane that a plate leaves out, over what else resists the slowest wave in the window: as
-/// the sphere that was fitted to the surface has it [1].
+/// Returns the stiffness of the membrane that a plate leaves out, over what else resists the slowest wave in the
+/// window: as the sphere that was fitted to the surface has it [1].
 double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material)
 {
     const double k = patch.sphere.fit.curvature, h = patch.thickness, nu = material.poissonRatio;

@@ -13,8 +13,8 @@ namespace palp {
 [[nodiscard]] DepthLaw depthLawOf(const Patch& patch) noexcept;
 
 /// What a force does to a patch. Where the force stiffens with depth, the dent does not grow with the force, but with
-/// the depth: it is the one that `load` makes of a linear plate. The same holds of a sheet that is pressed far. A linear
-/// one has load = force, to the bit.
+/// the depth: it is the one that `load` makes of a linear plate. The same holds of a sheet that is pressed far. A
+/// linear one has load = force, to the bit.
 struct Press {
     double depth = 0; ///< of the hand at once [m]
     double load  = 0; ///< times the patch's response is the dent [N]

@@ -258,7 +258,8 @@ double tangentOf(const Quartic::Local& here, double stiffness)
     return here.second[0][0] + here.second[0][1] * y + here.second[0][2] * z;
 }
 
-/// Returns the forces that a sum of the shapes leaves over, of those on the nodes: none where it satisfies all equations.
+/// Returns the forces that a sum of the shapes leaves over, of those on the nodes: none where it satisfies all
+/// equations.
 /// \param parts  of the shapes
 /// \param force  of the load [N]
 NodeField leftOver(const Shapes& shapes, const Shell& shell, const Solves& solves, const NodeField& load,
@@ -294,8 +295,8 @@ void addWhatIsMissing(Shapes& shapes, const Shell& shell, const NodeField& load,
     addShape(shapes, shell, solves, std::move(w), std::move(right));
 }
 
-/// Finds the shapes: the linear one, and what the best sum of those before misses at half of the reach and at all of it. For a
-/// flat sheet, whose first correction is of the third order, the latter is enough: 1 % at most.
+/// Finds the shapes: the linear one, and what the best sum of those before misses at half of the reach and at all of
+/// it. For a flat sheet, whose first correction is of the third order, the latter is enough: 1 % at most.
 Shapes shapesOf(const Shell& shell, const NodeField& load, const NodeField& linear, const Solves& solves, double reach)
 {
     Shapes shapes;

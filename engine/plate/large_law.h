@@ -9,8 +9,8 @@ namespace palp {
 
 /// The force of a sheet over the depth of its load, beyond the linear theory: flat ones harden, domes give way.
 ///
-/// It is given at depths 0, step, 2 step ... and trusted up to the last of them. Where the force would fall, as of a dome
-/// that snaps through, its tangent is 0: a hand that is pulled in is no hand that feels.
+/// It is given at depths 0, step, 2 step ... and trusted up to the last of them. Where the force would fall, as of a
+/// dome that snaps through, its tangent is 0: a hand that is pulled in is no hand that feels.
 struct LargeLaw {
     static constexpr int kSteps = 16;
     using Values                = std::array<double, std::size_t(kSteps) + 1>;
@@ -28,14 +28,14 @@ struct LargeLaw {
     [[nodiscard]] double depthOf(double force) const noexcept;
 };
 
-/// Finds the law of a load by a reduced model of three shapes, or two where the sheet is flat: the linear one, and how the
-/// linear shell answers to the forces that the best sum of the shapes before leaves over where the sheet is pressed deep. phi
-/// follows exactly from any sum of them; so the energy is a polynomial of degree four in three numbers, and is least at each
-/// depth.
+/// Finds the law of a load by a reduced model of three shapes, or two where the sheet is flat: the linear one, and how
+/// the linear shell answers to the forces that the best sum of the shapes before leaves over where the sheet is pressed
+/// deep. phi follows exactly from any sum of them; so the energy is a polynomial of degree four in three numbers, and
+/// is least at each depth.
 ///
-/// Against all of the equations (pressDeep()) the force of plates, domes, ellipsoids, cylinders and saddles is right to 0.2 %
-/// up to 0.8 thicknesses and to 0.8 % up to 1.8; on spots of stiffness to 1 % where the finger is on them, and beside those of
-/// 10, 30 and 50 times to 2, 3 and 5 %. Beyond two, where domes may snap, it is not.
+/// Against all of the equations (pressDeep()) the force of plates, domes, ellipsoids, cylinders and saddles is right to
+/// 0.2 % up to 0.8 thicknesses and to 0.8 % up to 1.8; on spots of stiffness to 1 % where the finger is on them, and
+/// beside those of 10, 30 and 50 times to 2, 3 and 5 %. Beyond two, where domes may snap, it is not.
 /// \param load      forces at the nodes, 1 N together
 /// \param linear    deflection under that load [m]
 /// \param reach     depth of the last step [m]

@@ -79,8 +79,8 @@ std::optional<std::string> whyShapeIsBad(const PlateGrid& grid, const NodeField&
                     index % shape.nodesZ(), "]");
 }
 
-/// Returns at least how firmly a foundation of this shape holds a rigid plate beside one that is 1 everywhere (which has
-/// 0.44) [1]: the least of the shares with which it resists a shift and turns about two axes, all of them together.
+/// Returns at least how firmly a foundation of this shape holds a rigid plate beside one that is 1 everywhere (which
+/// has 0.44) [1]: the least of the shares with which it resists a shift and turns about two axes, all of them together.
 double shareOfRigidMotions(const NodeField& shape)
 {
     if (shape.values().empty()) return 1;

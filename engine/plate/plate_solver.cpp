@@ -73,7 +73,8 @@ FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell&
     return solution;
 }
 
-/// Whether they differ in the values of their maps alone. Exactly: what a plate's answer is must not depend on the plates that were solved before.
+/// Whether they differ in the values of their maps alone. Exactly: what a plate's answer is must not depend on the
+/// plates that were solved before.
 bool sameButRigidity(const Plate& a, const Plate& b)
 {
     return a.grid == b.grid && a.edges == b.edges && a.poissonRatio == b.poissonRatio && a.foundation == b.foundation &&
@@ -206,8 +207,9 @@ struct PlateSolver::Multigrid {
         return ShellKernels::suit(context) ? "" : context.processor().name + " has no doubles, which shells need";
     }
 
-    /// The solver is kept, because memory that is made anew for each patch costs as much as a set-up; and one for another
-    /// grid too, because a law of large deflections has its own. A shell that is solved once more is not set up again.
+    /// The solver is kept, because memory that is made anew for each patch costs as much as a set-up; and one for
+    /// another grid too, because a law of large deflections has its own. A shell that is solved once more is not set up
+    /// again.
     [[nodiscard]] FootprintSolution solve(const Shell& wanted, std::span<const Footprint> given, std::size_t whole,
                                           double tolerance, double drawn)
     {
@@ -406,8 +408,8 @@ private:
         return rounding <= std::max(tolerance, MultigridPlateSolver::kLeastFloatTolerance);
     }
 
-    /// Makes a solver ready for eight loads at a time: in floats, or in doubles where floats are not enough for works to
-    /// this tolerance.
+    /// Makes a solver ready for eight loads at a time: in floats, or in doubles where floats are not enough for works
+    /// to this tolerance.
     [[nodiscard]] Prepared& prepareEights(const Plate& wanted, const Prepared& alone, double tolerance)
     {
         Eights& by = roundsLess(alone.solver->roundingInFloats(), tolerance) ? inFloats : inDoubles;

@@ -70,8 +70,8 @@ public:
 
     [[nodiscard]] const std::string& name() const noexcept; ///< of the GPU, "host" or "reference"
 
-    /// Returns what went wrong last: a GPU that "auto" skipped as broken, or why the host or the reference took over; empty
-    /// if nothing went wrong.
+    /// Returns what went wrong last: a GPU that "auto" skipped as broken, or why the host or the reference took over;
+    /// empty if nothing went wrong.
     [[nodiscard]] const std::string& note() const noexcept;
 
     /// Solves for the deflection under forces at the nodes [N]; see MultigridPlateSolver and ReferencePlateSolver for
@@ -93,9 +93,9 @@ public:
 
     /// Solves for loads on few nodes of one plate, with the whole deflection under one of them.
     ///
-    /// A work is of the second order in the error of its answer: loads are solved to the square root of the tolerance, at
-    /// most 1e-2, see MultigridPlateSolver::solveFootprints(). On the host they are solved by eights, in floats, and the
-    /// one whose deflection is wanted in doubles; on a GPU all in one batch.
+    /// A work is of the second order in the error of its answer: loads are solved to the square root of the tolerance,
+    /// at most 1e-2, see MultigridPlateSolver::solveFootprints(). On the host they are solved by eights, in floats, and
+    /// the one whose deflection is wanted in doubles; on a GPU all in one batch.
     /// \param whole      index of that load
     /// \param tolerance  of works, relative [1]
     /// \param drawn      of the deflection, relative in the energy norm [1]: less than works ask for takes more steps
@@ -111,8 +111,8 @@ public:
     /// Returns the time that it is [ms]; only differences count.
     using Clock = std::function<double()>;
 
-    /// Measures the least time of three solves of a trial, each with a new rigidity, after one that compiles kernels and
-    /// makes memory [ms].
+    /// Measures the least time of three solves of a trial, each with a new rigidity, after one that compiles kernels
+    /// and makes memory [ms].
     /// \param clock  empty: the wall clock
     /// \throws Error if the processor cannot solve it
     [[nodiscard]] double timeOf(const PlateTrial& trial, const Clock& clock = {});
@@ -123,8 +123,8 @@ public:
         double      milliseconds; ///< infinite: it could not solve the trial, see note()
     };
 
-    /// Compares the processor with the host by timeOf(), and goes on with the faster one: a GPU waits 3 to 5 us for each
-    /// of its dispatches, so that the host may win on small plates. It takes some ten solves.
+    /// Compares the processor with the host by timeOf(), and goes on with the faster one: a GPU waits 3 to 5 us for
+    /// each of its dispatches, so that the host may win on small plates. It takes some ten solves.
     /// \return the processor's time, then the host's; nothing where there is no choice, on the host and the reference
     std::vector<ProcessorTime> keepFaster(const PlateTrial& trial, const Clock& clock = {});
 

@@ -41,8 +41,8 @@ struct RowOfMoments {
     }
 };
 
-/// Returns how steep a field is at an inner node: along either axis the root of the mean square of its slopes to both sides,
-/// which a jump to one of them enters and a smooth map to the second order [1/m].
+/// Returns how steep a field is at an inner node: along either axis the root of the mean square of its slopes to both
+/// sides, which a jump to one of them enters and a smooth map to the second order [1/m].
 double steepnessAt(const NodeField& field, const PlateGrid& g, int i, int j)
 {
     const double own  = field(i, j);

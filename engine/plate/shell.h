@@ -31,23 +31,24 @@ struct Shell {
 /// Returns in one sentence why a shell cannot be solved; empty if it can.
 [[nodiscard]] std::optional<std::string> whyUnsolvable(const Shell& shell);
 
-/// Returns the plate that Airy's function lies under: the membrane's compliance is its rigidity, and its Poisson's ratio
-/// is -nu.
+/// Returns the plate that Airy's function lies under: the membrane's compliance is its rigidity, and its Poisson's
+/// ratio is -nu.
 [[nodiscard]] Plate membraneOf(const Shell& shell);
 
 /// Returns whether phi is held by no side: it is then known but for a linear function, which carries no force.
 [[nodiscard]] bool isStressFree(const Shell& shell) noexcept;
 
-/// The work that a load does beyond that along w because the sheet is sheared across its thickness as well, to the first
-/// order in thickness over length: the forces Q = div M across it, times Q / (5/6 G h).
+/// The work that a load does beyond that along w because the sheet is sheared across its thickness as well, to the
+/// first order in thickness over length: the forces Q = div M across it, times Q / (5/6 G h).
 ///
 /// Where a dent is only some thicknesses wide this matters: a dome of h/R 0.02 is 4 % softer by it, one of 0.04 7 %.
 ///
-/// Where the rigidity changes from D1 to D2 within a width b, the twisting moment changes with it, by dM, and its slope is a
-/// force along that rim whose work goes as dM^2 / b: without end as b vanishes, and with each finer grid. In Reissner's
-/// theory it dies away over h / sqrt(10) to either side, which leaves dM^2 / (b + 4 h / sqrt(10)). So what counts at a node
-/// is less by 1 + 0.55 h |grad ln D|: right for a change by ten. Solids by CalculiX, 2 mm thick with a straight step or a disc
-/// ten and a hundred times as stiff, are felt within 3 % so at 128 cells, next to such a step too.
+/// Where the rigidity changes from D1 to D2 within a width b, the twisting moment changes with it, by dM, and its slope
+/// is a force along that rim whose work goes as dM^2 / b: without end as b vanishes, and with each finer grid. In
+/// Reissner's theory it dies away over h / sqrt(10) to either side, which leaves dM^2 / (b + 4 h / sqrt(10)). So what
+/// counts at a node is less by 1 + 0.55 h |grad ln D|: right for a change by ten. Solids by CalculiX, 2 mm thick with a
+/// straight step or a disc ten and a hundred times as stiff, are felt within 3 % so at 128 cells, next to such a step
+/// too.
 /// \source  Reissner 1945; Castigliano's theorem
 class Shear {
 public:
@@ -66,10 +67,10 @@ private:
 /// Returns the same of one load [N m].
 [[nodiscard]] double shearWork(const Shell& shell, const NodeField& w);
 
-/// Returns the work that a load does less than that [N m] because it presses on the faces: they are squeezed towards each
-/// other on one side of the middle and drawn apart on the other, and the sheet, which then widens there, bends against the
-/// load by 6 nu q / (5 E h). Of a flat sheet this takes nu / 2 of the shear away, Reissner's (2 - nu) in place of 2; a force
-/// that acts in the middle of the thickness would add to it.
+/// Returns the work that a load does less than that [N m] because it presses on the faces: they are squeezed towards
+/// each other on one side of the middle and drawn apart on the other, and the sheet, which then widens there, bends
+/// against the load by 6 nu q / (5 E h). Of a flat sheet this takes nu / 2 of the shear away, Reissner's (2 - nu) in
+/// place of 2; a force that acts in the middle of the thickness would add to it.
 /// \param load  that bends the shell by w [m]
 /// \source  Reissner 1945
 [[nodiscard]] double squeezeWork(const Shell& shell, const NodeField& w, const Footprint& load);

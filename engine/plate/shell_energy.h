@@ -6,8 +6,8 @@ namespace palp {
 
 // What couples the deflection of a shell with its membrane, as sums of small terms in undivided differences.
 //
-// Where the surface is curved: - int w (kx phi_zz + kz phi_xx - 2 kxz phi_xz) = sum of k w n(phi), see Shell; n is a second
-// difference at the node of w, or the twist of a cell at each of whose corners w is a quarter.
+// Where the surface is curved: - int w (kx phi_zz + kz phi_xx - 2 kxz phi_xz) = sum of k w n(phi), see Shell; n is a
+// second difference at the node of w, or the twist of a cell at each of whose corners w is a quarter.
 //
 // What a sheet stores beyond the linear theory when it turns out of its surface as it bends,
 //
@@ -16,7 +16,8 @@ namespace palp {
 // as a sum of small cubic terms 1/2 k n(phi) s(w) t(w) of undivided differences:
 //
 //   edge along x, each end's half:  n = phi_zz at that node,  s = t = w(i+1) - w(i),  the same along z with phi_xx
-//   cell:                           n = phi_xz,  s = sum of both differences along x, t of those along z;  Nxz = -phi_xz
+//   cell:                           n = phi_xz,  s = sum of both differences along x, t of those along z;  Nxz =
+//   -phi_xz
 //
 // Where an edge of the membrane leaves no second difference, n is empty. Together with the quadratic energies this is
 // the theory of Marguerre and von Karman, valid while slopes stay small, some two thicknesses deep.

@@ -22,8 +22,8 @@ struct Landing {
 /// Returns where on the surface a hand in free space will be a lead from now, in the middle of the time during which
 /// a table that is solved for now will be in use: it goes on straight to the surface and then along it.
 ///
-/// Empty if the surface is farther away than 15 mm and than the hand goes in one and a half leads: a table made now will be
-/// replaced before the hand is there.
+/// Empty if the surface is farther away than 15 mm and than the hand goes in one and a half leads: a table made now
+/// will be replaced before the hand is there.
 /// \param lead  [s] see PatchSolver
 /// \thread any, one at a time for each object; asks the index three times and allocates
 [[nodiscard]] std::optional<Landing> landingOf(const SoftObject& object, const FreeHand& hand, double lead);

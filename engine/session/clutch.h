@@ -7,8 +7,8 @@
 
 namespace palp {
 
-/// Holds the tool of the scene where it is while its user carries the device back to the middle of the workspace, as one
-/// lifts a mouse and puts it down elsewhere. No force flows meanwhile; afterwards it engages anew.
+/// Holds the tool of the scene where it is while its user carries the device back to the middle of the workspace, as
+/// one lifts a mouse and puts it down elsewhere. No force flows meanwhile; afterwards it engages anew.
 ///
 ///     tool = device + offset         the offset is what the device went while the clutch was held
 ///

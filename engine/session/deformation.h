@@ -21,8 +21,8 @@ struct DeformationAnswer {
     std::string                        takeover{}; ///< who solves plates now, and why; empty: who did before
 };
 
-/// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of that
-/// in which the answer will be in use, see aheadOf().
+/// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of
+/// that in which the answer will be in use, see aheadOf().
 using PatchSolver = std::function<DeformationAnswer(const Touch&, double lead)>;
 
 /// The slow half of a session: solves the patch and the table of compliances for where a touch will be.
@@ -40,11 +40,12 @@ public:
     /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
     /// for its place. Where the surface is too far away, or has no answer there, there is no update and no reason.
     ///
-    /// Then the servo goes on with its last table for a quarter of a second of contact: k_c of the contact in series with
-    /// the last known compliance, flagged as stale. Before the first table firstLaw() answers, as long. After that the
-    /// force fades, and that is meant. What fails is most often a wrong unit or a window that is too small, and then thickness, footprint
-    /// and stiffness are as wrong: the hand would go on feeling something that is off by powers of ten, and recordings
-    /// would hold forces that no plate gave. So a session says in words why it has no force.
+    /// Then the servo goes on with its last table for a quarter of a second of contact: k_c of the contact in series
+    /// with the last known compliance, flagged as stale. Before the first table firstLaw() answers, as long. After that
+    /// the force fades, and that is meant. What fails is most often a wrong unit or a window that is too small, and
+    /// then thickness, footprint and stiffness are as wrong: the hand would go on feeling something that is off by
+    /// powers of ten, and recordings would hold forces that no plate gave. So a session says in words why it has no
+    /// force.
     /// \param lead  [s] see PatchSolver
     [[nodiscard]] DeformationAnswer solve(const Touch& touch, double lead);
 

@@ -77,9 +77,9 @@ private:
 /// number, whose bit i is set if button i is down; and so are orientation_x, _y, _z and _w, a quaternion of the grip.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one waypoint a line, numbers between commas,
-/// semicolons, blanks or tabs; lines that start with '#' are comments; the first name of a header line begins with "t", as
-/// in "time", and its names may have units of time and length, as in "time [ms]". A comment "# time x y z" that names
-/// as many columns as the first row has is a header too: numpy.savetxt writes it so.
+/// semicolons, blanks or tabs; lines that start with '#' are comments; the first name of a header line begins with "t",
+/// as in "time", and its names may have units of time and length, as in "time [ms]". A comment "# time x y z" that
+/// names as many columns as the first row has is a header too: numpy.savetxt writes it so.
 /// \throws Error naming the file and the line: NaN, infinity, time that does not rise, too few columns, a hand faster
 ///         than HandPath::kFastest (millimetres?)
 [[nodiscard]] HandPath readHand(const std::filesystem::path& path);

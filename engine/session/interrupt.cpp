@@ -16,7 +16,8 @@ constexpr std::int64_t kRepeat = 300'000'000; // [ns] within which a signal is t
 std::atomic<std::int64_t> asked = 0;          ///< [ns] when the first request came; 0: none has
 static_assert(std::atomic<std::int64_t>::is_always_lock_free, "a signal handler reads it");
 
-/// The second request ends the program, as the first would without catchInterrupts(). It calls what signal handlers may.
+/// The second request ends the program, as the first would without catchInterrupts(). It calls what signal handlers
+/// may.
 void onInterrupt(int signal)
 {
     timespec time{};

@@ -69,8 +69,8 @@ public:
     static constexpr std::size_t kMostMarkers = 100'000, kMostMarkersAtOnce = 256;
 
     /// \param folder    is made; it must not exist or be empty: sessions are never overwritten
-    /// \param complain  is called, at most once and on the writer's thread or in finish(), with why recording stopped or
-    ///                  how many ticks were lost; empty: standard error
+    /// \param complain  is called, at most once and on the writer's thread or in finish(), with why recording stopped
+    ///                  or how many ticks were lost; empty: standard error
     /// \throws Error naming the folder and the reason
     Recording(const std::filesystem::path& folder, const SessionInfo& info, Complain complain = {});
     ~Recording(); ///< as finish()

@@ -205,7 +205,8 @@ struct LoadedObject {
 /// \throws Error as loadCloud()
 [[nodiscard]] LoadedCloud asTouched(LoadedCloud loaded, const Scene& scene);
 
-/// Returns whether the scene, or its material, says how the force stiffens: it wins over what a file says of its points.
+/// Returns whether the scene, or its material, says how the force stiffens: it wins over what a file says of its
+/// points.
 [[nodiscard]] bool statesStiffening(const Scene& scene);
 
 /// Returns the files of the scene's laws: the volumes of grids.

@@ -44,12 +44,12 @@ inline constexpr std::string_view kBelowForm =
 /// Returns the object on the foundation that the scene's tissue, law or file, and its overlay make; without any, the
 /// object as it is.
 /// \param ofFile  the foundation below each point, of the file [Pa/m]; may be empty
-/// \throws Error as foundationShape() does, if the volume cannot be read, if the scene has no foundation to vary, and if
-///         the overlay lays nodules below a sheet under which there is no tissue
+/// \throws Error as foundationShape() does, if the volume cannot be read, if the scene has no foundation to vary, and
+///         if the overlay lays nodules below a sheet under which there is no tissue
 [[nodiscard]] SoftObject onTissue(const SoftObject& object, const Scene& scene, std::span<const double> ofFile = {});
 
-/// Returns, a sentence each, where the scene's tissue leaves the range of the solids that foundationShape() was compared
-/// with, so that the contrast of its nodules or volume is a guess.
+/// Returns, a sentence each, where the scene's tissue leaves the range of the solids that foundationShape() was
+/// compared with, so that the contrast of its nodules or volume is a guess.
 [[nodiscard]] std::vector<std::string> beyondComparedTissue(const Scene& scene);
 
 } // namespace palp

@@ -16,7 +16,8 @@
 namespace palp {
 namespace {
 
-/// Points within three spacings that a point of a surface has at least, itself among them: 28 of a sheet, 7 at a corner.
+/// Points within three spacings that a point of a surface has at least, itself among them: 28 of a sheet, 7 at a
+/// corner.
 constexpr std::size_t kCompany = 5;
 constexpr double      kReach   = 3; // [spacings]
 

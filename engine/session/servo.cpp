@@ -73,7 +73,8 @@ ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const H
 {
 }
 
-/// Goes towards the newest shape within some periods of the deformation, so that no step is felt; in free space at once.
+/// Goes towards the newest shape within some periods of the deformation, so that no step is felt; in free space at
+/// once.
 void ForceHalf::follow(const PatchUpdate* newest, double dt, bool touching) noexcept
 {
     if (newest && newest->table.sequence != shapeOf_ && newest->table.usable() && newest->shape.usable()) {
@@ -217,8 +218,8 @@ void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand, const WantedF
     last_     = held;
 }
 
-/// Returns by how much the plate's answer is too old to be felt [s]; at most 0 while it is not. Time in the air does not
-/// count, because nothing is asked then. A deformation at less than 12 Hz has three of its periods.
+/// Returns by how much the plate's answer is too old to be felt [s]; at most 0 while it is not. Time in the air does
+/// not count, because nothing is asked then. A deformation at less than 12 Hz has three of its periods.
 ///
 /// A contact that begins with the homogeneous law, or with nothing, has all of that time anew. One that begins on a
 /// table has what its predecessors left of it: a table that is too old is not felt again because the hand was lifted.

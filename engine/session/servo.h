@@ -144,10 +144,10 @@ private:
 
 /// The second half of a tick: pull -> compliance -> stiffness -> tank -> governor -> force.
 ///
-/// Where a metre of the device is s metres of the scene, a spring of K in the scene is one of s K at the device, because
-/// the force stays the same. Law, compliance, lean and relaxation live in the scene. Tank and governor protect the
-/// device's loop, so they are given its metres: places, depths and speeds / s, stiffness and stiffening s times, energies
-/// / s. At s = 1 the bits are those without.
+/// Where a metre of the device is s metres of the scene, a spring of K in the scene is one of s K at the device,
+/// because the force stays the same. Law, compliance, lean and relaxation live in the scene. Tank and governor protect
+/// the device's loop, so they are given its metres: places, depths and speeds / s, stiffness and stiffening s times,
+/// energies / s. At s = 1 the bits are those without.
 /// \thread as ContactHalf
 class ForceHalf {
 public:

@@ -25,8 +25,8 @@ bool isGood(const Hand& hand)
     return isFinite(hand.position) && isFinite(hand.velocity) && std::isfinite(q.w) && isFinite({q.x, q.y, q.z});
 }
 
-/// Takes a host's device as one that pushes on a hand. Where its force is not known it is taken for the largest that a scene may
-/// have, so that what else is known of it counts, and nothing that is not is credited.
+/// Takes a host's device as one that pushes on a hand. Where its force is not known it is taken for the largest that a
+/// scene may have, so that what else is known of it counts, and nothing that is not is credited.
 HapticDeviceInfo withUnknowns(HapticDeviceInfo device)
 {
     if (!(device.maximumForce > 0)) device.maximumForce = GovernorSettings::kMostForce;

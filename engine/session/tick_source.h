@@ -11,9 +11,9 @@ namespace palp {
 
 /// The ticks of a recording, read part by part: of ticks.npy, or of the .npy file per column that format 1 had.
 ///
-/// Both state their own layout and are believed as little as any file: sizes are checked against the files before memory
-/// is taken. Columns that this version does not know are passed over, those that the recording lacks keep a record's
-/// defaults.
+/// Both state their own layout and are believed as little as any file: sizes are checked against the files before
+/// memory is taken. Columns that this version does not know are passed over, those that the recording lacks keep a
+/// record's defaults.
 /// \thread one
 class TickSource {
 public:

@@ -109,8 +109,8 @@ public:
         switches = state_.buttons;
         return isGood();
     }
-    /// Renders what the governor makes of the force. The next call that asks for the hand waits for the next millisecond.
-    /// Torque and the force of a gripper are not rendered.
+    /// Renders what the governor makes of the force. The next call that asks for the hand waits for the next
+    /// millisecond. Torque and the force of a gripper are not rendered.
     bool setForceAndTorqueAndGripperForce(const chai3d::cVector3d& force, const chai3d::cVector3d& /*torque*/,
                                           double /*gripper*/) override
     {

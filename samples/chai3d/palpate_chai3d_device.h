@@ -16,10 +16,10 @@
 //     device->open();                  // then as any HapticDevice, such as in SessionParts::device
 //
 // CHAI3D's calibrate() lets an omega, delta or sigma that was not reset find its stops: the arm moves by itself,
-// unannounced. So open() calls it only where you say that it may, and have told whoever holds the grip. Without it CHAI3D
-// does not say whether the arm knows where it is: reset it before.
-// Its calls may block, so they are made on a thread of the driver's own. Forces reach it through the governor alone, and
-// only while a servo renews them: LineDevice sees to that. Torques and the force of a gripper stay zero.
+// unannounced. So open() calls it only where you say that it may, and have told whoever holds the grip. Without it
+// CHAI3D does not say whether the arm knows where it is: reset it before.
+// Its calls may block, so they are made on a thread of the driver's own. Forces reach it through the governor alone,
+// and only while a servo renews them: LineDevice sees to that. Torques and the force of a gripper stay zero.
 namespace palp {
 
 /// Whether open() may let an arm find its stops by itself.

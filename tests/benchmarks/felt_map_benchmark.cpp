@@ -1,5 +1,6 @@
-// A felt map of 40 000 points with a touch in each cube of 2 mm, from C++: `felt_map.py` beside this file times the same
-// from Python. Time is that of the processor on all cores, which other programs on the machine hardly move, and the clock's.
+// A felt map of 40 000 points with a touch in each cube of 2 mm, from C++: `felt_map.py` beside this file times the
+// same from Python. Time is that of the processor on all cores, which other programs on the machine hardly move, and
+// the clock's.
 #include <benchmark/benchmark.h>
 
 #include "engine/perception/felt_map.h"

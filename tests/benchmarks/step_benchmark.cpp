@@ -1,6 +1,6 @@
-// What the C interface adds to a tick: the servo's own tick, SteppedSession::step() and palpate_session_step(), each with a
-// deformation of its own, by turns in one loop at 1 kHz with one hand that slides over a sheet. Medians in microseconds,
-// which other programs on the machine hardly move; `above_us` is the last less the first.
+// What the C interface adds to a tick: the servo's own tick, SteppedSession::step() and palpate_session_step(), each
+// with a deformation of its own, by turns in one loop at 1 kHz with one hand that slides over a sheet. Medians in
+// microseconds, which other programs on the machine hardly move; `above_us` is the last less the first.
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -65,7 +65,8 @@ struct BareServo {
     }
 };
 
-/// One session of each kind, each over an object of its own: on a shared one two would find it in the caches of the other.
+/// One session of each kind, each over an object of its own: on a shared one two would find it in the caches of the
+/// other.
 struct Sessions {
     palp::Scene          scene  = palp::parseScene(kScene, "step_benchmark", ".");
     palp::SoftObject     object = palp::loadObject(scene).object;

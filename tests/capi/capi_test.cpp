@@ -214,8 +214,8 @@ TEST(CInterface, AFirstStepAgainAtItsTimeIsBadInput)
     EXPECT_FALSE(session.step(1e-3, 5e-3).flags & PALPATE_BAD_INPUT);
 }
 
-/// A tracker that loses the hand, or a host that moves its frame: from above the sheet into it within a tick, by a host that
-/// has no velocities. Then a bad tick while a force flows.
+/// A tracker that loses the hand, or a host that moves its frame: from above the sheet into it within a tick, by a host
+/// that has no velocities. Then a bad tick while a force flows.
 TEST(CInterface, AHandThatJumpsIsNotPushed)
 {
     const Object  object;
@@ -275,7 +275,8 @@ TEST(CInterface, AfterABadTickTheForceDoesNotComeBackAtOnce)
     }
 }
 
-/// A step that another thread's step finds at work has no force. A busy machine may give the other thread no time at first.
+/// A step that another thread's step finds at work has no force. A busy machine may give the other thread no time at
+/// first.
 TEST(CInterface, TwoThreadsThatStepGiveNoForceThatIsNotTheGovernors)
 {
     const Object      object;

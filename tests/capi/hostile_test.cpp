@@ -11,8 +11,8 @@
 
 #include "engine/capi/palpate.h"
 
-// Values that no caller means, in structs and arrays that are whole: each gives an answer or a sentence, and no answer is
-// a force that is not finite. PALPATE_HOSTILE_ROUNDS in the environment is how many objects are tried [200].
+// Values that no caller means, in structs and arrays that are whole: each gives an answer or a sentence, and no answer
+// is a force that is not finite. PALPATE_HOSTILE_ROUNDS in the environment is how many objects are tried [200].
 
 namespace {
 

@@ -177,8 +177,8 @@ struct Case {
 std::vector<Case> cases()
 {
     // A fit's bias grows as (radius/length)^2. Without noise radii are 5 spacings or the shell's length, 4 mm; with it
-    // some 14 mm, and 5 % of the size are left of the noise by choice. Ridges are 60 mm long, so that the fit takes half
-    // of the smallest radius of curvature, 10 mm.
+    // some 14 mm, and 5 % of the size are left of the noise by choice. Ridges are 60 mm long, so that the fit takes
+    // half of the smallest radius of curvature, 10 mm.
     return {{"sphere", ellipsoid(50e-3, 50e-3, 50e-3), 20, 0.01, 0.08},
             {"cylinder", turnedCylinder(40e-3), 25, 0.01, 0.08},
             {"ellipsoid", ellipsoid(60e-3, 45e-3, 35e-3), 17, 0.02, 0.10},

@@ -156,8 +156,9 @@ TEST(Resample, LogMeanIsTheGaussianMeanOfTheLogarithm)
         }
 }
 
-/// Close together on one side, five times farther apart in the middle and none beyond: each node has the mean over the smallest of the
-/// squares, doubled and doubled up to that of the sparsest, in which there is a point; beyond it is the nearest one.
+/// Close together on one side, five times farther apart in the middle and none beyond: each node has the mean over the
+/// smallest of the squares, doubled and doubled up to that of the sparsest, in which there is a point; beyond it is the
+/// nearest one.
 TEST(Resample, WherePointsAreFarApartTheMeanIsOverTheNextLargerSquare)
 {
     const PatchWindow window{{24, 30, 1.0 / 24, 0.9 / 30}, {-0.5, -0.45}};
@@ -226,8 +227,8 @@ TEST(Resample, SeveralQuantitiesAreEachWhatTheyWouldBeAlone)
             }
 }
 
-/// Registers of two, four and eight numbers: squares of 4 x 4 nodes, of some 12 that begin anywhere in a register, and of
-/// so many that a point's factors do not stay in registers.
+/// Registers of two, four and eight numbers: squares of 4 x 4 nodes, of some 12 that begin anywhere in a register, and
+/// of so many that a point's factors do not stay in registers.
 TEST(Resample, EveryInstructionSetGivesTheSameBits)
 {
     for (const int cells : {18, 64, 200})

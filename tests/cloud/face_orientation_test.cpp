@@ -159,7 +159,8 @@ TEST(FaceOrientation, TheWallOfACavityIsTurnedWithItsBodyOnly)
     EXPECT_EQ(faces, mesh.faces);
 }
 
-/// A dome, a ball that lacks one triangle, and a leaf of two sides that encloses nothing: which side is out, nobody says.
+/// A dome, a ball that lacks one triangle, and a leaf of two sides that encloses nothing: which side is out, nobody
+/// says.
 TEST(FaceOrientation, WhatIsOpenOrEnclosesNothingKeepsItsBits)
 {
     const test::Mesh      mesh  = ball(12, 1, {});

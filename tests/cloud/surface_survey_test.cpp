@@ -120,7 +120,8 @@ TEST(SurfaceSurvey, EdgesAreNoNoise)
     EXPECT_LT(double(noisy), 0.01 * double(points.size())) << "at corners a few balls do settle";
 }
 
-/// About the walls of a thin box, 3 to 5 spacings high, wide balls hold two faces that fit well, and the wall as "noise".
+/// About the walls of a thin box, 3 to 5 spacings high, wide balls hold two faces that fit well, and the wall as
+/// "noise".
 TEST(SurfaceSurvey, TheWallsOfACleanThinBoxAreNotNoisyAndHaveNoFaces)
 {
     for (const int high : {3, 4, 5}) { // spacings

@@ -9,9 +9,9 @@
 namespace palp {
 
 // Files that other programs wrote of one object: five points, a triangle 0 1 2 and a quadrilateral 0 2 4 3, a stiffness
-// of 1000 to 5000, and normals (0, 0, 2), of which the last is zero. They were made by scripts for the Python modules of
-// VTK 9.1 (vtkPolyDataWriter, vtkUnstructuredGridWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter with blocks
-// of 32 bytes) and of meshio 5.0 (Debian's python3-meshio).
+// of 1000 to 5000, and normals (0, 0, 2), of which the last is zero. They were made by scripts for the Python modules
+// of VTK 9.1 (vtkPolyDataWriter, vtkUnstructuredGridWriter, vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter with
+// blocks of 32 bytes) and of meshio 5.0 (Debian's python3-meshio).
 
 inline void expectTheWrittenObject(const LoadedCloud& loaded)
 {

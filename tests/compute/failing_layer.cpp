@@ -1,5 +1,5 @@
-// A layer of Vulkan between a program and any driver, in which the n-th call that may fail does fail. It says how a program
-// behaves whose driver crashes, hangs or has no memory left, at each instant of its life.
+// A layer of Vulkan between a program and any driver, in which the n-th call that may fail does fail. It says how a
+// program behaves whose driver crashes, hangs or has no memory left, at each instant of its life.
 //
 //     VK_INSTANCE_LAYERS=VK_LAYER_PALPATE_failing VK_LAYER_PATH=FOLDER   loads it; FOLDER holds its manifest
 //     FAILING_LAYER_AT=n           the call that fails, counted from 1; without it none does
@@ -168,7 +168,8 @@ void finishAll(const void* object)
     static_cast<void>(reinterpret_cast<PFN_vkDeviceWaitIdle>(idle)(of.handle));
 }
 
-/// What is never finished is waited for as long as the caller would: for ever, or not at all, because no test has patience.
+/// What is never finished is waited for as long as the caller would: for ever, or not at all, because no test has
+/// patience.
 void outwait(std::uint64_t nanoseconds)
 {
     while (nanoseconds == UINT64_MAX) ::pause();

@@ -16,7 +16,8 @@ namespace {
 
 using namespace proxytest;
 
-/// A servo's vectors may not grow: of a ball with too many points a coarser level is taken, whose points stand for them.
+/// A servo's vectors may not grow: of a ball with too many points a coarser level is taken, whose points stand for
+/// them.
 TEST(NearPoints, ABallWithTooManyPointsIsSeenMoreCoarsely)
 {
     Sheet  sheet(Layout::lattice, 3);

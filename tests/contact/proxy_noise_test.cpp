@@ -1,5 +1,5 @@
-// Noise as scans have it: a plane of random points, pressed 2 spacings deep and slid over at 0.1 spacings per tick, as a
-// hand does at 50 mm/s and 1 mm deep where points are 0.5 mm apart. Lengths are in spacings.
+// Noise as scans have it: a plane of random points, pressed 2 spacings deep and slid over at 0.1 spacings per tick, as
+// a hand does at 50 mm/s and 1 mm deep where points are 0.5 mm apart. Lengths are in spacings.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -115,8 +115,8 @@ TEST(ProxyNoise, NoiseIsAveragedOverATouchScale)
 
 TEST(ProxyNoise, TheOtherFaceOfAThinBodyIsNoNoise)
 {
-    // The other face was taken for noise, or for a sign that there is none: at 4 spacings and noise of 0.5 the ripple was
-    // 5.1 %, with steps of 0.038.
+    // The other face was taken for noise, or for a sign that there is none: at 4 spacings and noise of 0.5 the ripple
+    // was 5.1 %, with steps of 0.038.
     struct Body {
         double thickness, noise; ///< [spacings]
         double error, ripple;    ///< [1] allowed

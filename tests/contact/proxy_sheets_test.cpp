@@ -76,8 +76,8 @@ TEST(ProxySheets, NoiseDoesNotLetADeepHandThrough)
     EXPECT_LT(runs.worstLag, 1) << "depth times the error of the slope; recorded: 0.47, without the touch scale 4.1";
 }
 
-/// How far the proxy moves under a hand that has stopped on noise; infinite if it is lost. The noise is too little to be
-/// averaged over a touch scale.
+/// How far the proxy moves under a hand that has stopped on noise; infinite if it is lost. The noise is too little to
+/// be averaged over a touch scale.
 double chatter(int seed, double depth, ProxyForm form)
 {
     Touch touch(pointsOf({Layout::random, 0.1}, kFirstSeed + std::uint64_t(seed)), {form});

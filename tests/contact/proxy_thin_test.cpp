@@ -85,7 +85,8 @@ TEST(ProxyThin, AHandInsideAShellFeelsIt)
     }
 }
 
-/// Over ten sheets: a press at one place of one sheet is off by up to half a spacing at the border of the flipped faces.
+/// Over ten sheets: a press at one place of one sheet is off by up to half a spacing at the border of the flipped
+/// faces.
 TEST(ProxyThin, FlippedFacesOpenNoHoles)
 {
     constexpr double kDepth = 5;
@@ -126,8 +127,8 @@ TEST(ProxyThin, AThinBodyIsSmooth)
     }
 }
 
-/// What a hand close over a sheet has seen holds nothing beyond its border: it would be a touch of no force, after which
-/// the proxy is where the hand is.
+/// What a hand close over a sheet has seen holds nothing beyond its border: it would be a touch of no force, after
+/// which the proxy is where the hand is.
 TEST(ProxyThin, ASheetThatEndsHidesNoneBelow)
 {
     for (int seed = 0; seed < kSeeds; ++seed) {

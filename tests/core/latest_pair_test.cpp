@@ -43,8 +43,8 @@ TEST(LatestPair, TheReaderKeepsOneValueBesidesTheNewest)
     EXPECT_FALSE(latest.take(isKept)) << "taken once";
 }
 
-/// Shares of memory that the writer uses again. Values are as large as some cache lines, so that a torn one shows; under
-/// ThreadSanitizer this is also the proof of the ordering, and that no share ends on the reader's thread.
+/// Shares of memory that the writer uses again. Values are as large as some cache lines, so that a torn one shows;
+/// under ThreadSanitizer this is also the proof of the ordering, and that no share ends on the reader's thread.
 TEST(LatestPair, WhatTheReaderUsesIsNeverWrittenAndFreedByTheWriterOnly)
 {
     struct Slot {

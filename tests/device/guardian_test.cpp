@@ -119,9 +119,9 @@ protected:
 
     /// Notes how long the Falcon pushed from `failed` on [s].
     /// \param late  [s] by which this process came late since then
-    /// \return the same, less the longest time for which this process was late: it has the emulated Falcon, and on a busy
-    ///         machine a packet may wait for it, or all of the machine stands still and the guardian with it. A guardian
-    ///         that is late by itself is so while this process is not.
+    /// \return the same, less the longest time for which this process was late: it has the emulated Falcon, and on a
+    ///         busy machine a packet may wait for it, or all of the machine stands still and the guardian with it. A
+    ///         guardian that is late by itself is so while this process is not.
     double zeroAfter(DescriptorFalcon& falcon, double failed, double late = 0)
     {
         for (const double end = failed + 0.5; falcon.pushes() && steadyTime() < end;)

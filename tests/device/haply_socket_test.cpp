@@ -46,8 +46,8 @@ protected:
     {
         return with([](const EmulatedHaply& service) { return service.force(); });
     }
-    /// Ticks until it is so; false after 10 s, for a busy machine. There a late tick lowers the force, so that tests wait
-    /// for a third of it.
+    /// Ticks until it is so; false after 10 s, for a busy machine. There a late tick lowers the force, so that tests
+    /// wait for a third of it.
     template <class So>
     bool until(LineDevice& device, const GovernedForce& push, const So& so)
     {

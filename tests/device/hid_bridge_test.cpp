@@ -88,7 +88,8 @@ TEST_F(Bridge, CommandsThatWaitOnTheirWayAddToItsLagAndEndTheForceInTheEnd)
     bridge.open();
     EXPECT_EQ(after(100, push).fault, DeviceFault::none);
     firmware.late = 8;
-    // The bridge takes its times from the clock, and here all commands leave at once: they are sent a millisecond apart.
+    // The bridge takes its times from the clock, and here all commands leave at once: they are sent a millisecond
+    // apart.
     const auto slowly = [&](int ticks) {
         HapticState state;
         for (int n = 0; n < ticks; ++n) {

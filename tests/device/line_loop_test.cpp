@@ -1,5 +1,5 @@
-// The whole loop in virtual time on the drivers behind lines: tank, governor, driver, emulator or stand-in, arm. Mass and
-// damping of these arms are assumed, where their makers publish none; that of a Touch is published as 45 g.
+// The whole loop in virtual time on the drivers behind lines: tank, governor, driver, emulator or stand-in, arm. Mass
+// and damping of these arms are assumed, where their makers publish none; that of a Touch is published as 45 g.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,4 +1,5 @@
-// The drivers on makers' libraries, which this program loads as the drivers do: stand-ins of them, with the same symbols.
+// The drivers on makers' libraries, which this program loads as the drivers do: stand-ins of them, with the same
+// symbols.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -5,8 +5,9 @@ namespace palp {
 
 /// Takes after each failure how long a force went on, and says whether that is in time.
 ///
-/// All but one, and one more in fifty, have to be below the limit, and all below twice of it: where other programs hold the processors, who
-/// wakes up gets one a slice of the scheduler later. A guardian that waits too long, or not for its clock, is late every time.
+/// All but one, and one more in fifty, have to be below the limit, and all below twice of it: where other programs hold
+/// the processors, who wakes up gets one a slice of the scheduler later. A guardian that waits too long, or not for its
+/// clock, is late every time.
 class ZeroInTime {
 public:
     explicit ZeroInTime(double limit) : limit_(limit) {} ///< [s]

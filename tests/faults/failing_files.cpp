@@ -1,11 +1,12 @@
-// Calls on files that fail, for whole programs: loaded before the C library (LD_PRELOAD), it counts what changes files and
-// folders (new ones, writes to regular files, syncs, lengths, names, the closing of what was open for writing; not what is
-// removed, which a full disk lets go) and fails
+// Calls on files that fail, for whole programs: loaded before the C library (LD_PRELOAD), it counts what changes files
+// and folders (new ones, writes to regular files, syncs, lengths, names, the closing of what was open for writing; not
+// what is removed, which a full disk lets go) and fails
 //
 //     FAILING_FILES_AT=n        the n-th such call, counted from 1, and all later ones: a disk that is full
 //     FAILING_FILES_ONCE=n      the n-th alone: a disk that has an error
 //     FAILING_FILES_COUNT=FILE  how many there were so far
-//     FAILING_FILES_READ=FOLDER with this, what is counted and fails are reads of files below a folder, in place of changes
+//     FAILING_FILES_READ=FOLDER with this, what is counted and fails are reads of files below a folder, in place of
+//     changes
 #include <atomic>
 #include <cerrno>
 #include <cstdarg>

@@ -1,4 +1,5 @@
-// Memory that ends, for whole programs: loaded before the C library (LD_PRELOAD), it counts what is asked for and gives none
+// Memory that ends, for whole programs: loaded before the C library (LD_PRELOAD), it counts what is asked for and gives
+// none
 //
 //     FAILING_MALLOC_AT=n        to the n-th request, counted from 1; those after it get theirs
 //     FAILING_MALLOC_FROM=n      to the n-th and all later ones of 4 KiB and more: a limit that was met

@@ -1,7 +1,7 @@
 // Clocks that jump, for whole programs: loaded before the C library (LD_PRELOAD), it stands between a program and its
 // clocks. JUMPING_CLOCK_AFTER=SECONDS after its first look, what JUMPING_CLOCK names jumps by JUMPING_CLOCK_BY=SECONDS:
-// "wall", the clock on the wall, as when somebody sets it; "all", every clock; "sleep", those that count the time for which
-// a machine is suspended, as when it wakes.
+// "wall", the clock on the wall, as when somebody sets it; "all", every clock; "sleep", those that count the time for
+// which a machine is suspended, as when it wakes.
 #include <cstdlib>
 #include <cstring>
 #include <ctime>

@@ -16,8 +16,8 @@
 namespace palp {
 namespace {
 
-/// Lets the n-th allocation fail, and all after it, for every n up to the number that the act needs; large ones by strides.
-/// The act may throw, and what it leaves must be sound: `check` runs with memory again.
+/// Lets the n-th allocation fail, and all after it, for every n up to the number that the act needs; large ones by
+/// strides. The act may throw, and what it leaves must be sound: `check` runs with memory again.
 /// \param most  tries
 /// \return the number of tries that failed
 int sweep(const std::function<void()>& act, const std::function<void()>& check, int most, std::size_t leastBytes = 0)
@@ -42,8 +42,8 @@ int sweep(const std::function<void()>& act, const std::function<void()>& check, 
     return failures;
 }
 
-/// Allocations of JSON in its destructor end the program if they fail: nlohmann's json destroys its children by a list of
-/// its own, 16 bytes each. Those of sessions and scenes are smaller than this; what is larger is swept.
+/// Allocations of JSON in its destructor end the program if they fail: nlohmann's json destroys its children by a list
+/// of its own, 16 bytes each. Those of sessions and scenes are smaller than this; what is larger is swept.
 constexpr std::size_t kAboveJson = 65536; // [bytes]
 
 Scene smallScene()

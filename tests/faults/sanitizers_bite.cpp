@@ -4,8 +4,8 @@
 #include <string_view>
 #include <thread>
 
-// sanitizers_bite MISTAKE: makes the mistake. A build under that sanitizer ends here with a failure; where this program ends
-// well, its tests fail, because then no other test could.
+// sanitizers_bite MISTAKE: makes the mistake. A build under that sanitizer ends here with a failure; where this program
+// ends well, its tests fail, because then no other test could.
 
 namespace {
 

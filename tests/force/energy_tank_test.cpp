@@ -433,8 +433,8 @@ TEST(EnergyTank, AShapeThatRisesUnderALoadedFingerIsPaidFor)
     EXPECT_EQ(tank.step(soft).law.shape, DepthShape{});
 }
 
-/// From a dome that has given way to a spring that is softer at the surface and harder where the hand is: the rise waits,
-/// and the lower cap, which the loop asks for, holds at once.
+/// From a dome that has given way to a spring that is softer at the surface and harder where the hand is: the rise
+/// waits, and the lower cap, which the loop asks for, holds at once.
 TEST(EnergyTank, ALawOnItsWayIsWithinTheLowerCap)
 {
     EnergyTank tank({.limit = 2e-3, .start = 0.01e-3, .damping = 0, .power = 0});

@@ -90,7 +90,8 @@ TEST(GovernorWeight, IsGoneWithin20MillisecondsOfEveryFailure)
             for (int n = 0; n < 20; ++n) {
                 servo.tick();
                 const double now = toMotors(servo);
-                // 1 N a tick is the governor's slew; a fault, and the weight in any case, go by a twentieth. A tick of 0.2 s takes all.
+                // 1 N a tick is the governor's slew; a fault, and the weight in any case, go by a twentieth. A tick of
+                // 0.2 s takes all.
                 if (servo.in.dt == 1e-3) {
                     EXPECT_LE(last - now, kWeight / 20 + (felt > 0 ? 1 + felt / 20 : 0) + kRounding) << failure.name;
                 }

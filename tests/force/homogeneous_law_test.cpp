@@ -44,7 +44,8 @@ TEST(HomogeneousLaw, IsTheWeightedMeanOfAllSitesWithinOneCell)
         }
         const auto found = law.at(place);
         ASSERT_TRUE(found.has_value());
-        // Sites beyond one cell count or not by the cubes, whose corner is the law's own: at most 0.31 of a weight each.
+        // Sites beyond one cell count or not by the cubes, whose corner is the law's own: at most 0.31 of a weight
+        // each.
         EXPECT_NEAR(found->lnCompliance, compliance / weights, 0.02) << "of 1.2 over the object";
         EXPECT_NEAR(found->lnContactStiffness, contact / weights, 0.015) << "of 0.9";
         EXPECT_NEAR(found->stiffening.value(), stiffening / weights, 1) << "of 6";

@@ -136,8 +136,8 @@ double pressSlideLift(double fade)
 
 TEST(RelaxingContact, FreshMaterialUnderASlidingFingerIsPaidByWhatWasLost)
 {
-    // Pressed slowly it costs (1 - g) K d^2 / 2 = 0.9 mJ and what is lost; lifted fast from fresh material it would give
-    // back K d^2 / 2 = 2.25 mJ.
+    // Pressed slowly it costs (1 - g) K d^2 / 2 = 0.9 mJ and what is lost; lifted fast from fresh material it would
+    // give back K d^2 / 2 = 2.25 mJ.
     EXPECT_GE(pressSlideLift(kFade), 0);
     EXPECT_LT(pressSlideLift(kFade), 0.5e-3) << "or nothing faded";
 }

@@ -14,9 +14,9 @@
 
 #include <unistd.h>
 
-// palp_fuzz_replay SEEDS...: gives each harness the seeds of its folder in SEEDS, whole, cut short, and with single bytes
-// changed. It needs no clang, so that every machine runs it. It also measures memory: a reader that believes a header asks
-// for more than its input can hold.
+// palp_fuzz_replay SEEDS...: gives each harness the seeds of its folder in SEEDS, whole, cut short, and with single
+// bytes changed. It needs no clang, so that every machine runs it. It also measures memory: a reader that believes a
+// header asks for more than its input can hold.
 //
 // palp_fuzz_replay --linear SHORT LONG: compares the time that each harness takes for an input and for one with kLonger
 // times as many records, and how it ends, for each file of make_long.py.
@@ -65,7 +65,8 @@ constexpr std::size_t kMiB          = std::size_t(1) << 20;
 constexpr Exception   kExceptions[] = {
       // Its objects have plates of 8 cells, a solver and a session with its thread.
     {"capi", "", {kMostPerByte, 2 * kMiB}},
-    // JSON takes 8 times its size and 8 MiB; more is refused, see json_limits.h. A part of a scene or a plan is read twice.
+    // JSON takes 8 times its size and 8 MiB; more is refused, see json_limits.h. A part of a scene or a plan is read
+    // twice.
     {"", "wide", {kMostPerByte, 8 * kMiB}},
     {"haply", "long", {kMostPerByte, 8 * kMiB}},
     {"recording", "keys", {kMostPerByte, 8 * kMiB}},
@@ -156,10 +157,11 @@ private:
 };
 
 constexpr double kLonger = 16; ///< records of a long input over those of a short one [1]
-/// What a reader may take for the long one, over kLonger times what it takes for the short one [1]: a short input fits into
-/// the caches, a long one does not. One whose time grows with the square would take 16 times as long, not 3.
+/// What a reader may take for the long one, over kLonger times what it takes for the short one [1]: a short input fits
+/// into the caches, a long one does not. One whose time grows with the square would take 16 times as long, not 3.
 constexpr double kMostOver = 3;
-/// A harness that takes less than this for the long input over the short one has refused it, or not read it to its end [1].
+/// A harness that takes less than this for the long input over the short one has refused it, or not read it to its end
+/// [1].
 constexpr double kRead = 2;
 
 /// Returns the least processor time of several runs over the bytes [s].

@@ -214,10 +214,11 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
         if (kindOf(of.name) != Kind::curved) continue;
         const double felt = feltBy(Theory::shell, Edge::supported, of) / of.stiffness - 1;
         const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: spheres -1.0 to 0.1 %, ellipsoids 0.5 to 0.9, slope 1.5, at the shoulder 2.5 and 4.5, spots -3 to 2; in the
-        // windows that their dents ask for the side of an ellipsoid 3.6 and 4.8, that of a cigar, which is much steeper than
-        // shallow shells, 3.6 and 7.6. Without what the whole body gives way by, and with the squeeze left out, it was 3 to
-        // 4, 3 to 5, 6 to 10 and 2 to 9; with the window's sides along the principal directions ellipsoids were 1.3 to 1.6.
+        // Measured: spheres -1.0 to 0.1 %, ellipsoids 0.5 to 0.9, slope 1.5, at the shoulder 2.5 and 4.5, spots -3 to
+        // 2; in the windows that their dents ask for the side of an ellipsoid 3.6 and 4.8, that of a cigar, which is
+        // much steeper than shallow shells, 3.6 and 7.6. Without what the whole body gives way by, and with the squeeze
+        // left out, it was 3 to 4, 3 to 5, 6 to 10 and 2 to 9; with the window's sides along the principal directions
+        // ellipsoids were 1.3 to 1.6.
         std::printf("  %s, %.0f mm: shell %+.1f %%, flat plate %+.1f %%\n", std::string(of.name).c_str(),
                     1e3 * of.thickness, 100 * felt, 100 * flat);
         const double most = of.name == "sphere" ? 0.03 : of.name == "cigar" ? 0.1 : 0.05;
@@ -226,8 +227,9 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
     }
 }
 
-/// A sphere that is clamped 78 degrees from its far end, by calculix_bodies.py beside this: CalculiX 2.20, CAX8R of l/32 about the pole, three through the thickness,
-/// a pressure (1 - r^2/a^2)^2 of a = l, half on either face; times E R it depends on h/R alone.
+/// A sphere that is clamped 78 degrees from its far end, by calculix_bodies.py beside this: CalculiX 2.20, CAX8R of
+/// l/32 about the pole, three through the thickness, a pressure (1 - r^2/a^2)^2 of a = l, half on either face; times E
+/// R it depends on h/R alone.
 TEST(CalculixBodies, GiveWayAsAWhole)
 {
     struct Sphere {
@@ -293,8 +295,8 @@ TEST(CalculixShells, WhatHasBordersOfItsOwnBendsAboutWhatHoldsIt)
     for (const CalculixShell& of : kCalculixShells) {
         if (kindOf(of.name) != Kind::whole || of.name.ends_with("dish")) continue;
         const double felt = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: lobes -0.3 and 0.4 %, drum -1.2, its wart -2.2, disc -3.2, whose stem is nine cells wide and is found to
-        // a part of one: by CalculiX a stem of 7.56 mm in place of 8 is 7 % softer.
+        // Measured: lobes -0.3 and 0.4 %, drum -1.2, its wart -2.2, disc -3.2, whose stem is nine cells wide and is
+        // found to a part of one: by CalculiX a stem of 7.56 mm in place of 8 is 7 % softer.
         EXPECT_LT(std::abs(felt), 0.04) << of.name << ", " << of.thickness << " m";
     }
 }

@@ -205,8 +205,8 @@ TEST(DentLength, UnlikeCurvaturesReachFarther)
     EXPECT_NEAR(widthOf(3, 1e-6), widthOf(3, 0), 1e-6) << "a foundation that ends nothing";
 }
 
-/// Dents end on the outer half of a ring, and reach far on the inner one: which is the larger hangs on the places that are
-/// looked at, and these on nothing that is felt.
+/// Dents end on the outer half of a ring, and reach far on the inner one: which is the larger hangs on the places that
+/// are looked at, and these on nothing that is felt.
 TEST(DentLength, OfARingIsTheSameHoweverItIsTurned)
 {
     PatchSettings settings = shell();

@@ -246,8 +246,8 @@ TEST(Pipeline, NothingOfAFreeLobeStaysBehind)
 
 TEST(Pipeline, TheWallAndTheBottomOfABoxKeepTheirOwnPlaces)
 {
-    // Touched 4 mm from the edge of its top: the wall, 10 mm high, and the bottom are unrolled beside it. The bottom faces
-    // away from the finger, as the far face of a lobe does, but not that of a sheet of a millimetre.
+    // Touched 4 mm from the edge of its top: the wall, 10 mm high, and the bottom are unrolled beside it. The bottom
+    // faces away from the finger, as the far face of a lobe does, but not that of a sheet of a millimetre.
     std::mt19937_64                        random(3);
     std::uniform_real_distribution<double> along(-30e-3, 30e-3), across(0, 30e-3), down(0, 10e-3);
     std::vector<glm::dvec3>                places;

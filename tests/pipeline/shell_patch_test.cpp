@@ -109,7 +109,8 @@ TEST(ShellPatch, ADomeIsAsStiffAsAShallowSphereAndFarStifferThanAPlate)
     const SoftObject dome  = ellipsoid(glm::dvec3(50e-3), 0);
     const Patch      patch = touchOf(dome, {0, 0, 50e-3});
     ASSERT_TRUE(patch.curvature.has_value()) << patch.flatBecause;
-    // The fit's bias is 0.2 % of the curvature and c goes with its inverse; 1 % is the interpolation between spheres' maps.
+    // The fit's bias is 0.2 % of the curvature and c goes with its inverse; 1 % is the interpolation between spheres'
+    // maps.
     EXPECT_NEAR((patch.compliance - patch.bodyCompliance) / exactCompliance(20, 20), 1, 0.01);
     EXPECT_GT(touchOf(dome, {0, 0, 50e-3}, asPlate()).compliance / patch.compliance, 8); // measured 11
     EXPECT_NEAR(patch.shellLength, std::sqrt(50e-3 * 1e-3) / std::pow(12 * (1 - 0.45 * 0.45), 0.25), 1e-4);
@@ -497,8 +498,8 @@ TEST(ShellPatch, AWindowThatNobodyFixedStaysWithinTheTheory)
     EXPECT_NEAR(settledFor(tube, settings).window, 70e-3, 1e-9) << "a plate has no depth";
 }
 
-/// Dents of what is round die away before it is steep, so that its tips set no limit, see tooDeep() of the warnings; and on
-/// its sides, which bend nine times as much one way as the other, they reach far.
+/// Dents of what is round die away before it is steep, so that its tips set no limit, see tooDeep() of the warnings;
+/// and on its sides, which bend nine times as much one way as the other, they reach far.
 TEST(ShellPatch, ATipThatIsSteepKeepsNoWindowNarrow)
 {
     const SoftObject cigar    = ellipsoid({60e-3, 20e-3, 20e-3}, 0);
@@ -557,8 +558,8 @@ TEST(ShellPatch, ALensIsNoShellAndASheetWithTwoFacesIs)
 TEST(ShellPatch, EverySideOfTheMembraneIsHeldAsItsOwnSideOfTheWindow)
 {
     using enum Edge;
-    // Where the window is clamped the membrane is held in its plane, which is an edge of phi that is free, and the other
-    // way round; no two neighbouring sides are the same here, and each side is each edge once.
+    // Where the window is clamped the membrane is held in its plane, which is an edge of phi that is free, and the
+    // other way round; no two neighbouring sides are the same here, and each side is each edge once.
     EXPECT_EQ(stressEdgesFor({clamped, supported, free, supported}), (PlateEdges{free, supported, clamped, supported}));
     EXPECT_EQ(stressEdgesFor({supported, free, clamped, free}), (PlateEdges{supported, clamped, free, clamped}));
     EXPECT_EQ(stressEdgesFor({free, clamped, supported, clamped}), (PlateEdges{clamped, free, supported, free}));

@@ -66,8 +66,8 @@ TEST(ShellWindows, AShapeHasNoModulusAndIsThatOfTheShellMadeOfIt)
     EXPECT_NE(shapeOf(shellOf(20, 13, 4)), shapeOf(shellOf(20, 13, 4, 1e6, 1e5)));
 }
 
-/// Half a step of curvature and of each share is lost. At the corner of a table, 8 mm off its middle, in a window of some
-/// four lengths whose edges are felt, that is a twentieth of the least that fingers tell.
+/// Half a step of curvature and of each share is lost. At the corner of a table, 8 mm off its middle, in a window of
+/// some four lengths whose edges are felt, that is a twentieth of the least that fingers tell.
 TEST(ShellWindows, TablesOfAnyHomogeneousShellAreFlat)
 {
     PlateSolver            host("host");

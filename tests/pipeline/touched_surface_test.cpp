@@ -219,8 +219,8 @@ TEST(TouchedSurface, AnEvenShareOfManyPointsFindsTheSameSphere)
     EXPECT_NEAR(many / few, 1, 0.015) << "random points scatter it by 0.6 %, a share that is not even by 9 %";
 }
 
-/// A fifth of the spacing on one side of a line: 20 times as close along it. No place of the sheet is without an answer,
-/// and a homogeneous one answers alike.
+/// A fifth of the spacing on one side of a line: 20 times as close along it. No place of the sheet is without an
+/// answer, and a homogeneous one answers alike.
 TEST(TouchedSurface, ADensityThatVariesIsNoHole)
 {
     std::mt19937_64                  random(5);

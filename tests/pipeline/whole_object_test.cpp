@@ -322,9 +322,9 @@ TEST(WholeObject, AFlatStripOfAShellIsFlatWithoutAWordHoweverNarrow)
     EXPECT_EQ(strip.flatBecause, "");
 }
 
-/// Felt with its rim fixed, and in brackets where the rim may slide in its plane: 14.54 (9.89) and 6.63 (4.25) N/m, by finite
-/// differences of Reissner's equations along the radius, in a program that is within 0.02 % of his point load where the rim
-/// is far away.
+/// Felt with its rim fixed, and in brackets where the rim may slide in its plane: 14.54 (9.89) and 6.63 (4.25) N/m, by
+/// finite differences of Reissner's equations along the radius, in a program that is within 0.02 % of his point load
+/// where the rim is far away.
 TEST(WholeObject, ADomeThatIsHeldAtItsRimIsHeldInItsPlaneToo)
 {
     const Material material{.thickness = 1e-3, .poissonRatio = 0.3};

@@ -59,8 +59,8 @@ TEST(LargeLaw, IsThatOfAllEquationsUpToOnePointEightThicknesses)
         const char* name;
         double      close; // [1]
     };
-    // Measured on a footprint of 4 mm, in %: flat 0.05, supported dome 0.2, clamped dome 0.4, cylinder 0.15, spots of 10
-    // under the finger 1.0 and beside it 1.2, saddle 0.01. What is missing are shapes: it has three.
+    // Measured on a footprint of 4 mm, in %: flat 0.05, supported dome 0.2, clamped dome 0.4, cylinder 0.15, spots of
+    // 10 under the finger 1.0 and beside it 1.2, saddle 0.01. What is missing are shapes: it has three.
     for (const auto& [name, close] :
          {Of{"flat", 0.001}, Of{"cap ss", 0.003}, Of{"cap clamped", 0.006}, Of{"cylinder", 0.003}, Of{"wart", 0.012},
           Of{"beside", 0.015}, Of{"saddle", 0.001}}) {

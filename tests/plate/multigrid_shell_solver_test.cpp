@@ -186,8 +186,8 @@ TEST(MultigridShellSolver, GivesEachOfSeveralLoadsTheAnswerThatItHasAlone)
     EXPECT_EQ(together[4].work, 0);
 }
 
-/// Of a smooth map the first step gains next to all that nested iteration has left, and tells so; at a jump, or of too few
-/// loads, it does not.
+/// Of a smooth map the first step gains next to all that nested iteration has left, and tells so; at a jump, or of too
+/// few loads, it does not.
 TEST(MultigridShellSolver, SeveralLoadsOnAnEvenMapTakeOneStep)
 {
     const auto stepsOf = [](const Map& map, int loads, double tolerance) {
@@ -317,10 +317,10 @@ TEST(MultigridShellSolver, RefusesWhatCannotBeSolved)
     EXPECT_THROW((void)solved(shell, fingertip(square(17)), 1e-3), ContractViolation);
 }
 
-/// Moments along the rim jump there, by dM, and the work of their slope goes as dM^2 / b for a jump that takes b, without end:
-/// it grew by 1.5 to 1.7 from 64 to 128 cells. By Reissner's theory it goes as dM^2 / (b + 4 h / sqrt(10)). Two cells of a
-/// rim that goes in steps share the jump, of 1.56 and 0.78 mm, and h is 1 mm: (3.1 + 1.3) / (1.6 + 1.3) = 1.55 at most, of
-/// that part of the work alone.
+/// Moments along the rim jump there, by dM, and the work of their slope goes as dM^2 / b for a jump that takes b,
+/// without end: it grew by 1.5 to 1.7 from 64 to 128 cells. By Reissner's theory it goes as dM^2 / (b + 4 h /
+/// sqrt(10)). Two cells of a rim that goes in steps share the jump, of 1.56 and 0.78 mm, and h is 1 mm: (3.1 + 1.3) /
+/// (1.6 + 1.3) = 1.55 at most, of that part of the work alone.
 TEST(ShearWork, DoesNotGrowWithoutEndWhereTheRigidityJumps)
 {
     for (const double away : {0.0, 0.15, 0.25}) { // in the disc, over its rim, beside it [window]
@@ -344,9 +344,9 @@ TEST(ShearWork, DoesNotGrowWithoutEndWhereTheRigidityJumps)
     }
 }
 
-/// By calculix_steps.py beside this: CalculiX 2.20, C3D20R of 0.5 mm, two through the thickness of 2 mm, 40 mm square, clamped on all sides, Poisson's ratio
-/// 0.45, the fingertip's pressure of radius 4 mm half on either face; their mean deflection under it, of 1 N [m]. With three
-/// elements through the thickness the step of ten is 0.1 % softer.
+/// By calculix_steps.py beside this: CalculiX 2.20, C3D20R of 0.5 mm, two through the thickness of 2 mm, 40 mm square,
+/// clamped on all sides, Poisson's ratio 0.45, the fingertip's pressure of radius 4 mm half on either face; their mean
+/// deflection under it, of 1 N [m]. With three elements through the thickness the step of ten is 0.1 % softer.
 TEST(ShearWork, AtAJumpIsThatOfSolids)
 {
     constexpr double kThickness = 2e-3, kSide = 40e-3, kSoft = 1e6, kNu = 0.45; // [m], [m], [Pa], [1]

@@ -238,8 +238,8 @@ TEST(PressDeep, ASnappingDomeIsFollowedBeyondItsPeak)
 
 TEST(StretchEnergy, IsExactForLinearSlopesAndEvenForces)
 {
-    // phi of the second degree has the same forces everywhere; on a free edge of the membrane the difference across it is
-    // no term, so w is linear within and 0 near the rim.
+    // phi of the second degree has the same forces everywhere; on a free edge of the membrane the difference across it
+    // is no term, so w is linear within and 0 near the rim.
     Plate membrane      = membraneOf(sheet(12, 0, 0, Edge::clamped));
     membrane.grid       = {12, 10, 1e-3, 1.5e-3};
     membrane.rigidity   = NodeField(membrane.grid, 1);

@@ -109,7 +109,8 @@ TEST(ReferenceShellSolver, IsOfSecondOrderAgainstTheSineSeries)
 
 TEST(ReferenceShellSolver, MeetsReissnersPointLoadOnAShallowSphericalShell)
 {
-    // Reissner 1946: the deflection under a point force on an unbounded shallow sphere, sqrt(3 (1-nu^2)) F R / (4 E t^2).
+    // Reissner 1946: the deflection under a point force on an unbounded shallow sphere, sqrt(3 (1-nu^2)) F R / (4 E
+    // t^2).
     const double exact  = std::sqrt(3 * (1 - kPoisson * kPoisson)) / 4 * kRadius / (kModulus * kThickness * kThickness);
     const double length = std::sqrt(kRadius * kThickness) / std::pow(12 * (1 - kPoisson * kPoisson), 0.25);
     const double size   = 16 * length; // so far away the edge changes less than 0.3 %
@@ -145,7 +146,8 @@ TEST(ReferenceShellSolver, IsOfSecondOrderWithTwistVaryingStiffnessAndOtherEdges
                 }
             c[level] = compliance(shell, fingertip(shell.bending.grid));
         }
-        // The footprint's radius is 4.8 spacings of the coarsest grid: the ratio is 4 but for h^4 (5 to 8 from 16 cells).
+        // The footprint's radius is 4.8 spacings of the coarsest grid: the ratio is 4 but for h^4 (5 to 8 from 16
+        // cells).
         EXPECT_NEAR(differenceRatio(c), 4, 0.8) << edgesText(allSides(stress)) << ", " << edgesText(allSides(bending));
     }
 }
@@ -174,10 +176,10 @@ TEST(ReferenceShellSolver, IsThePlateWithoutCurvature)
     EXPECT_NEAR(compliance(shell, load) / plate, 1, 1e-9); // rounding at a condition of 1e6
 }
 
-/// A membrane whose compliance is C0 (1 + m cos 2y), y = pi x / a, and both fields one half wave, w = W sin y sin(pi z / a)
-/// and phi = P sin y sin(pi z / a). The membrane's equation, (kx w)_zz = - L(C, -nu) phi, then gives the curvature that
-/// goes with them,  kx = P C0 (pi / a)^2 / W (4 + 8 m + (16 - 4 nu) m cos 2y),  and the plate's equation the pressure,
-/// 4 D (pi / a)^4 w + kx (pi / a)^2 phi. Where C is constant Poisson's ratio of the membrane drops out.
+/// A membrane whose compliance is C0 (1 + m cos 2y), y = pi x / a, and both fields one half wave, w = W sin y sin(pi z
+/// / a) and phi = P sin y sin(pi z / a). The membrane's equation, (kx w)_zz = - L(C, -nu) phi, then gives the curvature
+/// that goes with them,  kx = P C0 (pi / a)^2 / W (4 + 8 m + (16 - 4 nu) m cos 2y),  and the plate's equation the
+/// pressure, 4 D (pi / a)^4 w + kx (pi / a)^2 phi. Where C is constant Poisson's ratio of the membrane drops out.
 double solvedOverManufactured(int cells)
 {
     constexpr double kVaries = 0.5;                                                           // m [1]
@@ -244,8 +246,8 @@ TEST(ReferenceShellSolver, APressedSphereIsUnderCompression)
 
 TEST(ShearWork, IsThatOfASupportedPlateOfFiniteThickness)
 {
-    // Of a wave sin(m pi x / a) sin(n pi z / a) on supported sides shear bends a sheet further by D K^2 / (5/6 G h), K^2
-    // the sum of the squares of both wave numbers (Mindlin 1951), with G h = 1 / (2 (1 + nu) C).
+    // Of a wave sin(m pi x / a) sin(n pi z / a) on supported sides shear bends a sheet further by D K^2 / (5/6 G h),
+    // K^2 the sum of the squares of both wave numbers (Mindlin 1951), with G h = 1 / (2 (1 + nu) C).
     const auto excess = [](int cells) {
         const Shell shell = homogeneous(cells, kSize, {0, 0, 0});
         NodeField   load(shell.bending.grid);

@@ -96,8 +96,8 @@ const HostVariant& best()
 const std::array<PlateEdges, 2> kEdges{PlateEdges{},
                                        PlateEdges{Edge::free, Edge::clamped, Edge::supported, Edge::free}};
 
-/// The answer is that of the operator with all other nodes held. Forces are given in floats: an island a thousand or ten
-/// thousand times as stiff as what holds it feels how they are rounded.
+/// The answer is that of the operator with all other nodes held. Forces are given in floats: an island a thousand or
+/// ten thousand times as stiff as what holds it feels how they are rounded.
 TEST(Rim, IsSolvedExactly)
 {
     for (const PlateEdges& edges : kEdges)

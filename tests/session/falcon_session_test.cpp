@@ -152,7 +152,7 @@ INSTANTIATE_TEST_SUITE_P(On, TenMinutes,
 /// Ten minutes of touch, five on either object: no fault, nothing that is not finite, no energy from nowhere.
 TEST_P(TenMinutes, NothingEverGoesWrong)
 {
-    constexpr double kSeconds = kSanitized ? 30 : 300; // [s] the same code again
+    constexpr double kSeconds = kSanitized ? 30 : 300;                 // [s] the same code again
     Session          s(GetParam().stiffness, exploring(kSeconds), 30); // 30 Hz: half of the solves, and the harder case
     bool             finite = true;
     std::uint32_t    faults = 0, device = 0;
@@ -236,7 +236,8 @@ TEST(FalconSession, EveryTroubleOfTheWireEndsAtZeroForceWithAReasonOrIsBorne)
     }
 }
 
-/// What the motors give is what was asked for, and what carries the arm: through the driver, the wire, the motors and back by the kinematics.
+/// What the motors give is what was asked for, and what carries the arm: through the driver, the wire, the motors and
+/// back by the kinematics.
 TEST(FalconSession, TheForceAtTheGripIsTheGovernors)
 {
     Session    s(kWart, exploring(6), 60);

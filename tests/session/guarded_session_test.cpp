@@ -23,8 +23,8 @@
 namespace palp {
 namespace {
 
-/// Stops of one session. Each takes 4 to 9 s, because a force comes on anew within 1.5 s of a lifted hand; the guardian's
-/// own tests have 200. PALPATE_INSTANTS asks for more.
+/// Stops of one session. Each takes 4 to 9 s, because a force comes on anew within 1.5 s of a lifted hand; the
+/// guardian's own tests have 200. PALPATE_INSTANTS asks for more.
 int instants()
 {
     const char* const asked = std::getenv("PALPATE_INSTANTS");

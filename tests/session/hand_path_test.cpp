@@ -348,7 +348,8 @@ TEST(GeneratedHand, DrapedOverASphereKeepsItsDepth)
 TEST(GeneratedHand, DrapedItIsRepeatedWithoutAJump)
 {
     const SpatialLaw constant{.kind = SpatialLaw::Kind::constant, .from = 1e6};
-    // Of a dozen seeds the one whose heights hang most on the way there: without the closing the circle jumps by 0.12 mm.
+    // Of a dozen seeds the one whose heights hang most on the way there: without the closing the circle jumps by 0.12
+    // mm.
     const SoftObject object(makeSample(sampleNamed("hemisphere"), 4'000, 12, constant));
     const HandPlace  top{{0, 0, 50e-3}, {0, 0, 1}};
     for (const HandMotion motion : {HandMotion::press, HandMotion::circle, HandMotion::scan}) {

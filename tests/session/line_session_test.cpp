@@ -58,8 +58,8 @@ struct Session {
     }
 };
 
-/// A relaxed hand without damping, and a firm one, lean on a wall that is stiffer than the device renders: the cap binds
-/// and the arm comes to rest.
+/// A relaxed hand without damping, and a firm one, lean on a wall that is stiffer than the device renders: the cap
+/// binds and the arm comes to rest.
 TEST_P(LineSessions, AnArmThatIsPressedIntoAStiffWallComesToRestAtTheCap)
 {
     for (const double grip : {50.0, 150.0, 500.0}) {

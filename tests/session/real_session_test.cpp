@@ -156,8 +156,8 @@ TEST_P(RealSessions, WhoTakesRecordsMustNotThrowAndEndsTheSessionIfItDoes)
 }
 
 /// Two seconds without a word from the deformation. A machine that holds the servo up for a tenth of a second makes the
-/// governor stop the force, as it should; then all of it is repeated, twice at most: a servo that waits for the deformation
-/// does so each time.
+/// governor stop the force, as it should; then all of it is repeated, twice at most: a servo that waits for the
+/// deformation does so each time.
 TEST_P(RealSessions, AStalledDeformationLosesItsForceAndGetsItBackOnceTheHandWasLifted)
 {
     for (int attempt = 0;; ++attempt) {

@@ -150,7 +150,8 @@ std::vector<std::pair<double, double>> feltAlong(const std::vector<TickRecord>& 
     return felt;
 }
 
-/// It starts from rest at once, where the sheet is even: tables reach as far as a hand accelerates, which this one beats.
+/// It starts from rest at once, where the sheet is even: tables reach as far as a hand accelerates, which this one
+/// beats.
 TEST(Strokes, AFastHandFeelsWhatASlowOneFeels)
 {
     for (const double friction : {0.0, 0.5}) {

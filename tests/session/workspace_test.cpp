@@ -95,8 +95,9 @@ TEST_P(ScaledSessions, APressedWallComesToRestAtTheCapOfTheDevice)
     }
 }
 
-/// Let go of on a spring at the cap that pulls from both sides, which no surface does, the arm settles: the servo's whole
-/// second half, at a scale, on an arm like a Falcon's. A spring three times as stiff at the device would swing for ever.
+/// Let go of on a spring at the cap that pulls from both sides, which no surface does, the arm settles: the servo's
+/// whole second half, at a scale, on an arm like a Falcon's. A spring three times as stiff at the device would swing
+/// for ever.
 TEST(ScaledServo, AReleasedArmOnATwoSidedSpringAtTheCapSettles)
 {
     ArmDevice   arm;

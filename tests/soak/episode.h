@@ -18,8 +18,8 @@ struct EpisodeReport {
     std::optional<std::string> wrong{};      ///< the first thing that must not be
 };
 
-/// Runs one session in virtual time: any hand on this object, with faults of device, clock and files at random instants.
-/// The same arguments give the same ticks.
+/// Runs one session in virtual time: any hand on this object, with faults of device, clock and files at random
+/// instants. The same arguments give the same ticks.
 [[nodiscard]] EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformation& deformation,
                                        FaultySolver& solver, std::uint64_t seed);
 

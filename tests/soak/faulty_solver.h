@@ -23,8 +23,8 @@ inline constexpr std::array kSolverTroubles{"none",     "silent",  "out of memor
                                             "replaced", "garbage", "extreme"};
 static_assert(kSolverTroubles.size() == std::size_t(SolverTrouble::count));
 
-/// The deformation of a session behind faults. Most answers are those of earlier touches, in another order: a solve takes
-/// a thousand times as long as a tick, and a servo must bear any table.
+/// The deformation of a session behind faults. Most answers are those of earlier touches, in another order: a solve
+/// takes a thousand times as long as a tick, and a servo must bear any table.
 class FaultySolver {
 public:
     using Update = std::shared_ptr<const PatchUpdate>;

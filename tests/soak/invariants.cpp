@@ -75,7 +75,8 @@ std::optional<std::string> Invariants::checkForce(const TickRecord& record, cons
     return {};
 }
 
-/// A force grows by the slew and by what the gain rises, and changes by no more than slew, fault ramp and rise together.
+/// A force grows by the slew and by what the gain rises, and changes by no more than slew, fault ramp and rise
+/// together.
 std::optional<std::string> Invariants::checkChange(const TickRecord& record, double rise, double fall,
                                                    const GovernorSettings& limits) const
 {

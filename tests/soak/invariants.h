@@ -21,8 +21,8 @@ public:
     [[nodiscard]] std::optional<std::string> check(const TickRecord& record, const GovernedForce& given, double dt,
                                                    const GovernorSettings& limits);
 
-    /// Checks the table that the servo uses: it is usable and never an older one; and, if asked to, that it is the one that
-    /// was handed over, unchanged, which takes as long as a tick.
+    /// Checks the table that the servo uses: it is usable and never an older one; and, if asked to, that it is the one
+    /// that was handed over, unchanged, which takes as long as a tick.
     [[nodiscard]] std::optional<std::string> checkTable(const ComplianceTable* inUse, bool whole);
 
     /// Notes a table before it is handed over.

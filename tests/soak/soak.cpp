@@ -1,6 +1,6 @@
 // palp_soak: sessions in virtual time, one after the other, over all scenes and hands, with faults at random instants.
-// A batch is one scene with some sessions; it depends on the seed and its number only, so that a run can go on after any
-// batch, and a finding is repeated by that batch alone.
+// A batch is one scene with some sessions; it depends on the seed and its number only, so that a run can go on after
+// any batch, and a finding is repeated by that batch alone.
 #include <chrono>
 #include <cstdlib>
 #include <fstream>

@@ -1,4 +1,5 @@
-// Which reports of sanitizers are a driver's own: part of every program that may load one, see engine/compute/CMakeLists.txt.
+// Which reports of sanitizers are a driver's own: part of every program that may load one, see
+// engine/compute/CMakeLists.txt.
 
 #if defined(__has_feature)
 #if __has_feature(address_sanitizer)
@@ -10,8 +11,8 @@
 
 #if defined(PALP_ADDRESS_SANITIZER)
 
-// LeakSanitizer names leaks by their library after the program has ended. A driver must still be loaded then, or its leaks
-// cannot be told from ours. The loader calls this function in place of the C library's.
+// LeakSanitizer names leaks by their library after the program has ended. A driver must still be loaded then, or its
+// leaks cannot be told from ours. The loader calls this function in place of the C library's.
 extern "C" int dlclose(void*)
 {
     return 0;
@@ -37,8 +38,9 @@ extern "C" const char* __lsan_default_suppressions()
 
 #else
 
-// The runtime sleeps for a second at the end of each process that still has threads, in case one of them races with the exit:
-// a quarter of an hour over all tests, which sanitizers seldom have. Workers that were set free have woken up in this time.
+// The runtime sleeps for a second at the end of each process that still has threads, in case one of them races with the
+// exit: a quarter of an hour over all tests, which sanitizers seldom have. Workers that were set free have woken up in
+// this time.
 extern "C" const char* __tsan_default_options()
 {
     return "atexit_sleep_ms=20";

@@ -16,8 +16,8 @@ thread_local std::int64_t left   = kEnough; // allocations that succeed
 thread_local std::size_t  least  = 0;       // [bytes]
 thread_local bool         ranOut = false;
 
-/// Returns true for a place in Embree or TBB, which do not survive a throw out of their own allocations: Embree 3.13 goes
-/// on with a tree that it has half built.
+/// Returns true for a place in Embree or TBB, which do not survive a throw out of their own allocations: Embree 3.13
+/// goes on with a tree that it has half built.
 bool isInEmbree(const void* caller)
 {
     Dl_info where{};

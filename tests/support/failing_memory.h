@@ -4,8 +4,8 @@
 
 namespace palp {
 
-/// While one lives, the n-th allocation of this thread by operator new fails, and every one after it. The program has to
-/// link failing_memory.cpp.
+/// While one lives, the n-th allocation of this thread by operator new fails, and every one after it. The program has
+/// to link failing_memory.cpp.
 class FailingMemory {
 public:
     /// \param allocations  that still succeed

@@ -14,9 +14,9 @@ class SurfaceRenderer;
 /// The largest differences of a picture from the stored one. A driver in software uses the processor's approximate
 /// reciprocals, which differ between makers of processors: up to 53 pixels of a window were found 1 or 2 of 255 levels
 /// off. Differences of 3 levels in one of a thousand pixels are invisible. An edge through the very centre of a pixel
-/// covers it on one processor and not on another: 4 pixels of a window by 6 levels, and one by 25, were found; twice as many
-/// pass. A shape that moved by a pixel, a missing character and another colour exceed at least one of the bounds, as
-/// golden_picture_test.cpp shows.
+/// covers it on one processor and not on another: 4 pixels of a window by 6 levels, and one by 25, were found; twice as
+/// many pass. A shape that moved by a pixel, a missing character and another colour exceed at least one of the bounds,
+/// as golden_picture_test.cpp shows.
 inline constexpr int         kGoldenLevels      = 3;     ///< of 255, in each of red, green and blue
 inline constexpr double      kGoldenPixels      = 0.001; ///< share of all pixels that may differ at all [1]
 inline constexpr std::size_t kGoldenStrays      = 8;  ///< number of pixels that may differ by more than kGoldenLevels

@@ -62,8 +62,8 @@ struct UlpTolerance {
 /// may be the host, which runs no shader.
 [[nodiscard]] std::string processorOfTests();
 
-/// Returns whether a driver in software other than lavapipe compiles a kernel with loops around the plate's operator for
-/// 10 to 90 s, as SwiftShader does, instead of a fraction of a second.
+/// Returns whether a driver in software other than lavapipe compiles a kernel with loops around the plate's operator
+/// for 10 to 90 s, as SwiftShader does, instead of a fraction of a second.
 [[nodiscard]] bool compilesSlowly(const compute::Context& context);
 
 /// Why a test of such kernels is skipped there.

@@ -39,7 +39,8 @@ private:
     std::size_t         stride_; ///< of a row of one sum, whole registers, with a margin that they may run into
     std::size_t         sumsPerRow_;
     std::vector<double> storage_; ///< of the sums
-    /// For each row of nodes, and a few more, those of w [1], then those of w ln v of each; a row begins with a register.
+    /// For each row of nodes, and a few more, those of w [1], then those of w ln v of each; a row begins with a
+    /// register.
     double* sums_ = nullptr;
 };
 

@@ -33,8 +33,8 @@ void FaceRows::addCorner(double corner, CloudRows::Place place)
     if (corners_.size() <= points_) corners_.push_back(std::uint32_t(corner));
 }
 
-/// Makes room for so many triangles, and once a ninth of the faces' bytes is read, for all that follow if the file goes on
-/// as it has so far: a list that doubles takes three times its memory while it is moved.
+/// Makes room for so many triangles, and once a ninth of the faces' bytes is read, for all that follow if the file goes
+/// on as it has so far: a list that doubles takes three times its memory while it is moved.
 void FaceRows::makeRoom(std::size_t count)
 {
     if (count <= triangles_.capacity()) return;

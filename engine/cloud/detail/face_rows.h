@@ -10,8 +10,8 @@
 namespace palp {
 
 /// Makes triangles of the faces of a file: a polygon becomes a fan about its first corner, or, where that would leave a
-/// concave polygon, triangles that lie within it. A face with fewer than three corners, or with a corner twice, is omitted
-/// and counted; so are triangles of points that were merged. Faces may come before the points they are made of.
+/// concave polygon, triangles that lie within it. A face with fewer than three corners, or with a corner twice, is
+/// omitted and counted; so are triangles of points that were merged. Faces may come before the points they are made of.
 /// Use: for each face `addCorner` and then `endFace`; `finish` once all points are read.
 /// \thread one
 class FaceRows {

@@ -17,24 +17,24 @@ constexpr double      kThin          = 0.08; // [spacing] points that deviate le
 constexpr double      kOverlap       = 1.8; // [spacing] least way along the surface to the other layer's nearest point:
                                             // beside a step or across a ridge it is farther
 constexpr int kLayerRounds = 4;             // the first plane lies askew, by as much as the layers are apart
-// A cut between two layers leaves most of the variance between them [1]: 0.9 and more, that through noise 0.66. Where the
-// layers are so far apart that the first plane may stand across them [spacings], that is no sign yet.
+// A cut between two layers leaves most of the variance between them [1]: 0.9 and more, that through noise 0.66. Where
+// the layers are so far apart that the first plane may stand across them [spacings], that is no sign yet.
 constexpr double      kParted = 0.7, kNearlyFlat = 0.6;
 constexpr std::size_t kMostQuadric = 256; // points; of more, evenly spread ones are taken
 constexpr std::size_t kForSmooth   = 12;  // points: fewer determine no quadric well
 constexpr double      kEven        = 0.3; // [1] least ratio of their extents, squared, for that
 constexpr int         kForTails    = 40;  // points: fewer tell nothing about tails
 
-// Two faces are so many times as far apart as their points deviate [1]. Half of evenly spread noise is 3.5 times its own
-// deviation from the other half, half of Gaussian noise 2.7 times; faces four times their noise apart have 4.4.
+// Two faces are so many times as far apart as their points deviate [1]. Half of evenly spread noise is 3.5 times its
+// own deviation from the other half, half of Gaussian noise 2.7 times; faces four times their noise apart have 4.4.
 constexpr double kFacesApart = 3.8;
 
-// The depth of the other face scatters by so many times this one's deviation at most [1]: as much where they are parallel,
-// more where they meet at a rim.
+// The depth of the other face scatters by so many times this one's deviation at most [1]: as much where they are
+// parallel, more where they meet at a rim.
 constexpr double kParallel = 1.5;
 
-// The kurtosis of two heaps of similar size is 1 to 1.8 [1]: what is above this needs no cut, which takes a third as long
-// as the fits. Gaussian noise has 3, give or take 0.2 in the wide balls.
+// The kurtosis of two heaps of similar size is 1 to 1.8 [1]: what is above this needs no cut, which takes a third as
+// long as the fits. Gaussian noise has 3, give or take 0.2 in the wide balls.
 constexpr double kMayBeFaces = 2.4;
 
 /// The principal axes of some points.

@@ -51,8 +51,8 @@ bool fanLiesWithin(std::span<const glm::dvec2> flat)
     return least >= -kRounding * all;
 }
 
-/// Returns whether no other corner lies in the triangle at a place of what is left of the polygon, or on its edge, which
-/// would leave a piece without area. The polygon must turn left there.
+/// Returns whether no other corner lies in the triangle at a place of what is left of the polygon, or on its edge,
+/// which would leave a piece without area. The polygon must turn left there.
 bool isEar(std::span<const glm::dvec2> flat, std::span<const std::uint32_t> left, std::size_t place)
 {
     const std::size_t last = (place + left.size() - 1) % left.size(), next = (place + 1) % left.size();

@@ -218,7 +218,8 @@ LoadedCloud parseStl(std::istream& stream, std::uint64_t size, const std::string
                      const CloudReadSettings& settings)
 {
     const auto triangles = statedTriangles(stream, size);
-    // Some programs pad. The four bytes of text that an ASCII file has in place of the number promise more than it holds.
+    // Some programs pad. The four bytes of text that an ASCII file has in place of the number promise more than it
+    // holds.
     const bool isWhole  = triangles && size == kBefore + kTriangle * *triangles;
     const bool isPadded = triangles && *triangles > 0 && size > kBefore + kTriangle * *triangles;
     const bool isBinary = isWhole || isPadded;

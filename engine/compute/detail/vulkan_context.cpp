@@ -22,8 +22,8 @@ namespace {
 constexpr double kPatienceHardware = 10;  // [s]
 constexpr double kPatienceSoftware = 300; // [s]
 
-/// A thread that sleeps until an interrupt is woken 50 to 150 us late, as long as some solves take: so it looks at the fence
-/// itself at first.
+/// A thread that sleeps until an interrupt is woken 50 to 150 us late, as long as some solves take: so it looks at the
+/// fence itself at first.
 constexpr auto kLooking = std::chrono::milliseconds(1);
 
 std::atomic<bool> isDriverLeftAtWork{false};

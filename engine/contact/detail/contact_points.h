@@ -15,13 +15,14 @@ namespace palp {
 /// Where the survey finds the points to be clean they are the object's own, to the bit. Where their noise exceeds an
 /// eighth of their spacing, a fit through the usual two dozen would leave much of it, so the surface is shown at a
 /// touch scale of eleven or seven times the noise (cloud/touch_scale.h): about one point per square of that side, each
-/// moved onto a quadric through the points within some scales. Its spacing is the scale, so that all that the proxy does in spacings it does in scales
-/// there. Points that lie on one another count once.
+/// moved onto a quadric through the points within some scales. Its spacing is the scale, so that all that the proxy
+/// does in spacings it does in scales there. Points that lie on one another count once.
 ///
 /// Points of which the survey knows the side are marked with it, and so are those in line with them.
 ///
-/// A fit within 3.75 scales of seven times the noise sigma holds N = pi (26 sigma)^2 / s^2 points of spacing s, of which
-/// about half count: what is left is sigma / sqrt(0.55 N) = 0.029 s, however large the noise is; of eleven times, 0.019 s.
+/// A fit within 3.75 scales of seven times the noise sigma holds N = pi (26 sigma)^2 / s^2 points of spacing s, of
+/// which about half count: what is left is sigma / sqrt(0.55 N) = 0.029 s, however large the noise is; of eleven times,
+/// 0.019 s.
 /// \thread immutable
 /// \source the projection: Levin 1998, The approximation power of moving least squares; the scale is our own
 class ContactPoints {

@@ -36,8 +36,9 @@ struct PlaneFit {
 ///
 /// psi falls from 1 to 0 between two heights, so that a second sheet does not count. With s the spacing, K is shrunk to
 /// K (K s)^2 / ((K s)^2 + k0^2) and clamped, and the rest is solved again: curvature that noise could have made counts
-/// as none; smoothed points have little noise, and k0 is smaller there. The new normal is that of the given plane, tilted by (beta, gamma): its side cannot flip. The radius r
-/// grows in holes. Support falls where the centroid of the points is off centre, as at a border.
+/// as none; smoothed points have little noise, and k0 is smaller there. The new normal is that of the given plane,
+/// tilted by (beta, gamma): its side cannot flip. The radius r grows in holes. Support falls where the centroid of the
+/// points is off centre, as at a border.
 ///
 /// \thread one; allocates nothing after construction
 /// \source our own reconstruction; constants chosen by our own prototype on 8 to 40 random clouds a case

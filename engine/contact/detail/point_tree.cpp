@@ -33,8 +33,8 @@ constexpr int kMostLevels  = 100;
 /// Points whose part of the tree is worth a thread.
 constexpr std::size_t kWorthAThread = 50'000;
 
-/// A point and the cube of side `least` in which it lies, by the number of the cube along a Morton curve: those of larger
-/// cubes are the same without the last bits.
+/// A point and the cube of side `least` in which it lies, by the number of the cube along a Morton curve: those of
+/// larger cubes are the same without the last bits.
 struct Place {
     std::uint64_t cube  = 0;
     std::uint32_t point = 0;

@@ -25,8 +25,8 @@ public:
     void                      clear() noexcept { points_.clear(); }
     void                      add(const glm::dvec3& away) { points_.push_back(away); } ///< [m] from the place
 
-    /// Returns the way [m] from the place to the surface; empty if the points are too few, or lie in layers: the heights
-    /// of noise have a kurtosis of 3, those of two sheets 1.
+    /// Returns the way [m] from the place to the surface; empty if the points are too few, or lie in layers: the
+    /// heights of noise have a kurtosis of 3, those of two sheets 1.
     [[nodiscard]] std::optional<glm::dvec3> wayToSurface(double scale);
 
 private:

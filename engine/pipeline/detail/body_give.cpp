@@ -13,8 +13,8 @@
 namespace palp {
 namespace {
 
-/// Returns the cosine of the angle from the contact at which a body is taken to be held [1]: where its surface turns farthest
-/// away from there, the rim of a cap; of a body that turns all the way, just below its widest.
+/// Returns the cosine of the angle from the contact at which a body is taken to be held [1]: where its surface turns
+/// farthest away from there, the rim of a cap; of a body that turns all the way, just below its widest.
 ///
 /// By a cap, or a sphere, with as large a share of its area that turns farther: the wall of a cut rim is a smaller one.
 double rimOf(const SoftObject& object, const glm::dvec3& outward)

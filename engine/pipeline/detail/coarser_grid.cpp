@@ -9,7 +9,8 @@
 namespace palp {
 namespace {
 
-/// Returns the field averaged along one axis with the weights of nodes 0, 1, ... away; beyond the window there are none.
+/// Returns the field averaged along one axis with the weights of nodes 0, 1, ... away; beyond the window there are
+/// none.
 NodeField averagedAlong(bool alongX, const NodeField& field, const PlateGrid& grid, const std::vector<double>& weights)
 {
     const int reach = int(weights.size()) - 1, nodes = alongX ? grid.nodesX() : grid.nodesZ();

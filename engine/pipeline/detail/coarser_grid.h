@@ -9,8 +9,8 @@ namespace palp {
 /// Returns the shell on a grid of twice the spacing.
 [[nodiscard]] Shell everySecondOf(const Shell& fine);
 
-/// Blurs what a shell resists by as much as its map would be if it had been resampled on a grid of twice the spacing: by the
-/// logarithms, with a Gaussian whose variance is what the wider kernel's exceeds the present one's by.
+/// Blurs what a shell resists by as much as its map would be if it had been resampled on a grid of twice the spacing:
+/// by the logarithms, with a Gaussian whose variance is what the wider kernel's exceeds the present one's by.
 /// \param pointSpacing  of the points that its rigidity was resampled from [m]
 void blurAsIfCoarser(Shell& shell, double pointSpacing);
 

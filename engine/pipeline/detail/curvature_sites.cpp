@@ -16,22 +16,24 @@
 namespace palp {
 namespace {
 
-/// Area of the surface that has a site, over the square of the radius of the fits [1]: of a field, and of a survey, which only
-/// finds the radius. Where the points are noisy it is a fourth of that: fits differ then, and a hand would feel each come and
-/// go (measured: with the whole area a tube is felt four times as uneven).
+/// Area of the surface that has a site, over the square of the radius of the fits [1]: of a field, and of a survey,
+/// which only finds the radius. Where the points are noisy it is a fourth of that: fits differ then, and a hand would
+/// feel each come and go (measured: with the whole area a tube is felt four times as uneven).
 constexpr double kSiteArea = 0.2, kSurveySiteArea = 0.8, kMostSites = 4;
 
-/// Error that noise makes of a fit, in inverse radii, above which points count as noisy [1]: a hundredth of what may bend.
+/// Error that noise makes of a fit, in inverse radii, above which points count as noisy [1]: a hundredth of what may
+/// bend.
 constexpr double kQuiet = 0.0015;
 
-/// Area of a cube's points over that of a site from which on they have one [1]: of many cubes the surface cuts off a corner.
+/// Area of a cube's points over that of a site from which on they have one [1]: of many cubes the surface cuts off a
+/// corner.
 constexpr double kCorner = 0.3;
 
 /// Side of the cubes over the root of a site's area [1]: their points are shared out to some three to twelve sites.
 constexpr double kCubes = 2;
 
-/// Returns how many points of a ball a fit needs: some hundred say how a clean surface bends, and of noisy ones as many as
-/// keep what noise adds below 0.004 of the inverse radius, a twentieth of what may bend within it.
+/// Returns how many points of a ball a fit needs: some hundred say how a clean surface bends, and of noisy ones as many
+/// as keep what noise adds below 0.004 of the inverse radius, a twentieth of what may bend within it.
 /// \param noise  of the points [m]
 std::size_t enoughFor(double noise, double radius)
 {
@@ -81,8 +83,8 @@ Facing facing(const SoftObject& object, std::uint32_t begin, std::uint32_t end, 
     return result;
 }
 
-/// Chooses the sites of a cube, separately of the points that face alike, for a thin body has two faces in it: those of each
-/// are cut along the curve, which keeps neighbours together, into as many pieces as have the area of a site.
+/// Chooses the sites of a cube, separately of the points that face alike, for a thin body has two faces in it: those of
+/// each are cut along the curve, which keeps neighbours together, into as many pieces as have the area of a site.
 /// \param begin, end  ranks
 /// \param area        of a site among clean points [m^2]
 void addSites(CurvatureNotes::Level& level, const SoftObject& object, std::uint32_t begin, std::uint32_t end,

@@ -17,18 +17,20 @@ struct LaidPoints {
     std::span<const glm::dvec3>    normals;   ///< [1] as many, towards the finger
 };
 
-/// Returns the fits of one radius of the ladder at those sites of the object that are among the points. What is not known
-/// from earlier touches is fitted, and kept with the object.
+/// Returns the fits of one radius of the ladder at those sites of the object that are among the points. What is not
+/// known from earlier touches is fitted, and kept with the object.
 /// \param rung  see rungRadius()
 /// \thread any; starts threads
 [[nodiscard]] std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPoints& points, int rung,
                                                         FitsFor what);
 
-/// Returns the curvature of one face of the object about a place, within a radius [m]; empty where the points determine none.
+/// Returns the curvature of one face of the object about a place, within a radius [m]; empty where the points determine
+/// none.
 [[nodiscard]] std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
                                                           const glm::dvec3& outward, double radius);
 
-/// Returns the radius from which on noise changes a fit by 0.5 1/m or less [m]: its error is kFitNoiseError noise spacing / radius^3.
+/// Returns the radius from which on noise changes a fit by 0.5 1/m or less [m]: its error is kFitNoiseError noise
+/// spacing / radius^3.
 /// \param noise, spacing  of the points [m]
 [[nodiscard]] double quietFitRadius(double noise, double spacing) noexcept;
 

@@ -10,8 +10,8 @@
 namespace palp {
 namespace {
 
-/// Returns how far along the surface the points are that lie straight behind one and face the other way [m], their mean;
-/// empty if there are none.
+/// Returns how far along the surface the points are that lie straight behind one and face the other way [m], their
+/// mean; empty if there are none.
 std::optional<double> wayBehind(const TouchedSurface& surface, const PointGrid& grid, const std::vector<double>& ways,
                                 std::size_t point, double radius, double deepest)
 {
@@ -35,8 +35,8 @@ std::optional<double> wayBehind(const TouchedSurface& surface, const PointGrid& 
 
 enum class Face { unknown, touched, other };
 
-/// Returns whether most of the points around that face as one does, and whose face is known, are on the other face: of a
-/// few points chance, or the rim, leaves none straight behind.
+/// Returns whether most of the points around that face as one does, and whose face is known, are on the other face: of
+/// a few points chance, or the rim, leaves none straight behind.
 bool isAmongOthers(const TouchedSurface& surface, const PointGrid& grid, const std::vector<Face>& faces,
                    std::size_t point, double radius)
 {

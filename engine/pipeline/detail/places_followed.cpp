@@ -9,7 +9,8 @@
 namespace palp {
 namespace {
 
-/// Returns the place of the fitted surface straight over a point; empty if that is too far off to be the sheet's other face.
+/// Returns the place of the fitted surface straight over a point; empty if that is too far off to be the sheet's other
+/// face.
 std::optional<ChartPoint> placeOver(const Patch& patch, const glm::dvec3& point)
 {
     constexpr double kMost = 2.5; // [thicknesses]: faces that bulge apart, and what the surface lies off its fit

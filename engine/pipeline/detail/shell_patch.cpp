@@ -31,7 +31,8 @@ double meanOf(const NodeField& field, const NodeField& covered)
     return all > 0 ? sum / all : 0;
 }
 
-/// Returns the depth below the plane at the contact that nearly all of the touched surface in the window stays within [m].
+/// Returns the depth below the plane at the contact that nearly all of the touched surface in the window stays within
+/// [m].
 double depthOf(const Patch& patch, const SoftObject& object, const LaidPoints& points)
 {
     constexpr double      kNearly = 0.98; // stray points do not count [1]
@@ -50,8 +51,8 @@ double depthOf(const Patch& patch, const SoftObject& object, const LaidPoints& p
     return *nearly;
 }
 
-/// Returns how deep the surface is across the window, over its width [1]: by its mean curvature there, which also says how
-/// far a tube wraps round, or by how far it reaches, where it turns back on the way.
+/// Returns how deep the surface is across the window, over its width [1]: by its mean curvature there, which also says
+/// how far a tube wraps round, or by how far it reaches, where it turns back on the way.
 double sagOf(const Patch& patch, const SoftObject& object, const LaidPoints& points)
 {
     const CurvatureField& field = *patch.curvature;
@@ -68,8 +69,8 @@ double meanOfSquares(const NodeField& field)
     return sum / double(field.values().size());
 }
 
-/// Returns the length over which a dent at the contact dies away [m]; where neither the curvature nor a foundation ends it,
-/// that of the larger curvature.
+/// Returns the length over which a dent at the contact dies away [m]; where neither the curvature nor a foundation ends
+/// it, that of the larger curvature.
 double lengthOf(const Patch& patch, const Material& material, double foundation)
 {
     const auto [most, least] = patch.principal;
@@ -121,8 +122,8 @@ bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field, double foun
            kNothing * (wave * geometricMean(sheetRigidity(patch).values()) + foundation);
 }
 
-/// Returns the place of the object's other face behind the contact, if it is so near that both are one sheet: 0.3 to 2.5
-/// thicknesses.
+/// Returns the place of the object's other face behind the contact, if it is so near that both are one sheet: 0.3 to
+/// 2.5 thicknesses.
 std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& object)
 {
     constexpr double kLeast = 0.3, kMost = 2.5, kSpacings = 2; // thicknesses; radius of the tube [1]
@@ -143,8 +144,8 @@ std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& 
     return sum / count;
 }
 
-/// Returns whether the faces of one sheet bulge apart, or towards each other, so that its middle surface is less than half
-/// as curved as the one that is touched. Two fits say so, before those of a field are made.
+/// Returns whether the faces of one sheet bulge apart, or towards each other, so that its middle surface is less than
+/// half as curved as the one that is touched. Two fits say so, before those of a field are made.
 /// \param bent  width of what bends [m]
 bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
 {

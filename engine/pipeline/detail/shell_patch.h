@@ -4,12 +4,14 @@
 
 namespace palp {
 
-/// Returns why a patch bends flat though the settings ask for a shell, as far as the contact alone shows it; else nothing.
+/// Returns why a patch bends flat though the settings ask for a shell, as far as the contact alone shows it; else
+/// nothing.
 /// \pre the patch has its chart
 [[nodiscard]] std::string whyFlat(const Patch& patch, const SoftObject& object, const PatchSettings& settings);
 
-/// Makes a shell of the patch's plate, if the settings ask for one: finds how the touched surface is curved, and what its
-/// membrane resists. Where that cannot be, or `flatBecause` says so already, the patch stays a plate, and says why there.
+/// Makes a shell of the patch's plate, if the settings ask for one: finds how the touched surface is curved, and what
+/// its membrane resists. Where that cannot be, or `flatBecause` says so already, the patch stays a plate, and says why
+/// there.
 /// \param object  that the patch's points are of
 /// \param points  of the touched surface, all that have a place in the chart
 void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings);
@@ -18,8 +20,8 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
 /// \pre its membrane's compliance is known: the settings ask for a shell or large deflections
 [[nodiscard]] Shell shellOf(const Patch& patch);
 
-/// Returns the edges of the membrane that go with a window's edges: a free one is a border of the object, where no force
-/// crosses it; a supported one cuts the window from a larger body; a clamped one holds it in its plane as well.
+/// Returns the edges of the membrane that go with a window's edges: a free one is a border of the object, where no
+/// force crosses it; a supported one cuts the window from a larger body; a clamped one holds it in its plane as well.
 [[nodiscard]] PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept;
 
 } // namespace palp

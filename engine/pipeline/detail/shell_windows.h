@@ -9,8 +9,8 @@
 
 namespace palp {
 
-/// What decides, but for a factor of all compliances, how a homogeneous shell bends in a given patch window: in steps, so
-/// that shells that hardly differ are one.
+/// What decides, but for a factor of all compliances, how a homogeneous shell bends in a given patch window: in steps,
+/// so that shells that hardly differ are one.
 struct ShellShape {
     int                thin       = 0;  ///< bending over stretching, as a length, over the window
     int                curved     = 0;  ///< the largest of the curvatures, by which the window is deep, over that

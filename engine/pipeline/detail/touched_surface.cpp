@@ -97,8 +97,8 @@ struct WholeBall {
     double     mostNoise = 0; ///< [m]
 };
 
-/// Looks at all points of the ball; empty if their normals turn too far from the nearest one's, if some are known to face
-/// the other way, or if there are none.
+/// Looks at all points of the ball; empty if their normals turn too far from the nearest one's, if some are known to
+/// face the other way, or if there are none.
 std::optional<WholeBall> wholeBall(const SoftObject& object, const Contact& contact, const Ball& ball,
                                    std::uint32_t nearest)
 {
@@ -132,8 +132,8 @@ std::optional<WholeBall> wholeBall(const SoftObject& object, const Contact& cont
 }
 
 /// Returns true if the points, seen along a normal, nowhere lie one over the other: the heights within a square of two
-/// spacings differ by no more than those of a slope of 45 degrees and noise. Sheets so near to each other that they pass
-/// are told apart by the sides that the survey knows.
+/// spacings differ by no more than those of a slope of 45 degrees and noise. Sheets so near to each other that they
+/// pass are told apart by the sides that the survey knows.
 bool isOneSheet(const TouchedSurface& surface, const WholeBall& whole, const Ball& ball)
 {
     constexpr double   kSquare = 2, kSteep = 2.9, kNoisy = 8; // [spacings], [spacings], [standard deviations of noise]

@@ -70,8 +70,8 @@ public:
     SphereFitResult sphere{};
 
     TouchedSurface() = default;
-    /// Makes the surface of all points of a ball, whose normals are those of the survey with the sign that agrees with the
-    /// first one. It reads what the object has: of 200 000 points nothing is copied.
+    /// Makes the surface of all points of a ball, whose normals are those of the survey with the sign that agrees with
+    /// the first one. It reads what the object has: of 200 000 points nothing is copied.
     /// \param least  cosine of the largest angle between first and a normal [1]
     TouchedSurface(const SoftObject& object, const Ball& ball, const glm::dvec3& first, double least);
     /// Makes the surface of some points of a ball.
@@ -117,11 +117,11 @@ private:
     std::vector<glm::dvec3>     normals_{}; ///< the same [1]
 };
 
-/// Finds the piece around a contact: its points and their normals. Where the points of the ball face alike and nowhere lie
-/// one over the other, they are the piece; elsewhere a flood finds it, which costs some five times as much, and ten times where it comes for the
-/// first time.
-/// \param enough  points; where they are more than twice as many the flood takes an even share of them, but none so sparse
-///                that a step could pass through the sheet
+/// Finds the piece around a contact: its points and their normals. Where the points of the ball face alike and nowhere
+/// lie one over the other, they are the piece; elsewhere a flood finds it, which costs some five times as much, and ten
+/// times where it comes for the first time.
+/// \param enough  points; where they are more than twice as many the flood takes an even share of them, but none so
+///                sparse that a step could pass through the sheet
 /// \param ball  of the object's points, about the contact; the answer reads it as long as it lives
 /// \throws Error if the cloud has fewer than seven points or most of them coincide
 [[nodiscard]] TouchedSurface pieceOf(const SoftObject& object, const Contact& contact, const Ball& ball,

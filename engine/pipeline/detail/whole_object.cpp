@@ -10,10 +10,10 @@
 namespace palp {
 namespace {
 
-/// Rigidity beyond the border over that of the sheet [1]. With a plate's a cantilever of 60 mm is softer than one with a
-/// free edge by less than the grid's own error (0.02 % with 1e-5 in its place), and solvers take a step or two more. The
-/// solver of shells converges up to such contrasts alone: dishes and lobes are 2 % too stiff by them, nearly all of it by
-/// the membrane's.
+/// Rigidity beyond the border over that of the sheet [1]. With a plate's a cantilever of 60 mm is softer than one with
+/// a free edge by less than the grid's own error (0.02 % with 1e-5 in its place), and solvers take a step or two more.
+/// The solver of shells converges up to such contrasts alone: dishes and lobes are 2 % too stiff by them, nearly all of
+/// it by the membrane's.
 constexpr double kVoidOfPlates = 1e-4, kVoidOfShells = 3e-3, kVoidOfMembranes = 1e-3;
 
 double shareOf(double covered, double beyond)
@@ -21,8 +21,8 @@ double shareOf(double covered, double beyond)
     return beyond + (1 - beyond) * covered;
 }
 
-/// Returns for each node whether it lies on the piece of the sheet that is touched: separate pieces hang together only by
-/// what is next to nothing.
+/// Returns for each node whether it lies on the piece of the sheet that is touched: separate pieces hang together only
+/// by what is next to nothing.
 std::vector<bool> touchedPiece(const Patch& patch, const NodeField& load)
 {
     const PlateGrid&         grid = patch.plate.grid;

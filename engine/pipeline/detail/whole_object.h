@@ -7,8 +7,8 @@ namespace palp {
 /// Returns whether a node lies on the sheet, not beyond a border of an object that the window spans.
 [[nodiscard]] bool isOnSheet(const Patch& patch, std::size_t node);
 
-/// Leaves of a patch's plate what the object covers: beyond its border the rigidity is next to nothing, so that the border
-/// is free. Fills in patch.covered and patch.beyond.
+/// Leaves of a patch's plate what the object covers: beyond its border the rigidity is next to nothing, so that the
+/// border is free. Fills in patch.covered and patch.beyond.
 /// \differs the paper's window is cut from the object and held at its sides
 /// \param spacing  of the points where they are farthest apart [m]
 /// \pre the plate's rigidity is that of the sheet, also beyond its border
@@ -30,8 +30,8 @@ void cutOutCurvature(Patch& patch);
 /// \param load        of the fingertip, on the sheet: only its piece counts in heldNodes
 void holdNodes(Patch& patch, const NodeField& held, double foundation, const NodeField& load);
 
-/// Finds where the sheet bends freely: neither at its border, nor where it is held. The moments jump there, over one cell
-/// instead of none, and their slopes are no forces. Fills in patch.sheared.
+/// Finds where the sheet bends freely: neither at its border, nor where it is held. The moments jump there, over one
+/// cell instead of none, and their slopes are no forces. Fills in patch.sheared.
 /// \param held  as holdNodes() has it; empty: nothing is
 void findSheared(Patch& patch, const NodeField& held);
 

@@ -18,8 +18,8 @@ struct BendInChart {
     double x = 0, z = 0, xz = 0; ///< [1/m]
 };
 
-/// Returns the radius of the fits, and of the surface about the contact that counts [m]: a dent's, or more where the points
-/// are few or noisy.
+/// Returns the radius of the fits, and of the surface about the contact that counts [m]: a dent's, or more where the
+/// points are few or noisy.
 double radiusFor(const TouchedSurface& surface, const PatchSettings& settings)
 {
     constexpr double kDent = 0.125, kMost = 0.25, kSpacings = 5; // of the window [1]; [spacings]
@@ -73,7 +73,8 @@ std::optional<double> sideFor(const PatchSettings& settings)
 Frame turnedToBend(const Chart& chart, const SoftObject& object, const TouchedSurface& surface,
                    const PatchSettings& settings)
 {
-    // Below it the turn of the window changes what is felt by less than 0.3 %, and the directions are those of the noise [1].
+    // Below it the turn of the window changes what is felt by less than 0.3 %, and the directions are those of the
+    // noise [1].
     constexpr double kAlike = 0.1;
     const auto       side   = sideFor(settings);
     if (!side) return chart.frame;

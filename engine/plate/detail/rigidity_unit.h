@@ -10,8 +10,8 @@ namespace palp {
 /// \param largest  [N m], > 0
 [[nodiscard]] double rigidityUnit(double largest) noexcept;
 
-/// Returns whether a unit serves for rigidities from the least to the largest [N m]: products of several of them stay far
-/// from the ends of 32 bits.
+/// Returns whether a unit serves for rigidities from the least to the largest [N m]: products of several of them stay
+/// far from the ends of 32 bits.
 [[nodiscard]] bool isUnitOf(double unit, const Extremes& rigidity) noexcept;
 
 /// Writes rigidities for the shaders: relative to a unit, in 32 bits.

@@ -20,8 +20,8 @@ struct RimFront {
     [[nodiscard]] int rows() const noexcept { return borderRows + ownRows; }
 };
 
-/// The rim of a level as the host's kernels see it: plain memory, which a Rim owns. Unknowns are numbered in the order of
-/// elimination.
+/// The rim of a level as the host's kernels see it: plain memory, which a Rim owns. Unknowns are numbered in the order
+/// of elimination.
 struct RimView {
     const int*           nodes;   ///< of the level, by unknown
     const int*           numbers; ///< unknown by node, or -1

@@ -66,7 +66,8 @@ int countOf(int cells, int parity)
     return (cells - parity) / 2 + 1;
 }
 
-/// A layout's span that a compiler knows, so that all places of a stencil are a fixed way from its node; 0: it does not.
+/// A layout's span that a compiler knows, so that all places of a stencil are a fixed way from its node; 0: it does
+/// not.
 template <int kSpan>
 struct KnownSpan {
 };
@@ -257,8 +258,8 @@ Sums applyAll(const HostDispatch& d, const Stored* b, int fieldsFrom)
     return sums;
 }
 
-// Relaxation of one colour. Nodes of the same colour count with their values from before: changes wait until no row that
-// is still to come needs what was.
+// Relaxation of one colour. Nodes of the same colour count with their values from before: changes wait until no row
+// that is still to come needs what was.
 
 template <int kSpan, bool kTogether, int kOdd>
 void relaxRow(const ShellLayout& l, const float* entries, const float* b, const float* x, float* changes, int i)
@@ -346,8 +347,8 @@ struct HalfSweep {
     }
 };
 
-// All half sweeps, and the residual behind them if it is wanted, go over the rows at once, each some rows behind the one
-// before: a level is read from memory once and not five times. The numbers are those of one after the other.
+// All half sweeps, and the residual behind them if it is wanted, go over the rows at once, each some rows behind the
+// one before: a level is read from memory once and not five times. The numbers are those of one after the other.
 template <int kSpan, bool kTogether>
 void smoothKnown(const HostDispatch& d)
 {
@@ -633,7 +634,8 @@ void shellSteepness(const HostDispatch& d)
     });
     store(bound<double>(d, 2), sums);
 }
-// Buffers: entries, right side, answer, what is missing of the right side; of eight loads the sums of both times the answer too.
+// Buffers: entries, right side, answer, what is missing of the right side; of eight loads the sums of both times the
+// answer too.
 void shellMissing(const HostDispatch& d)
 {
     applyAll<false, double, double, double>(d, bound<const double>(d, 1), 2);

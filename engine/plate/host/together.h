@@ -2,10 +2,10 @@
 #include "engine/plate/host/frame.h"
 #include "engine/plate/host/host_kernels.h"
 
-// Loads side by side: at each node a field then has the numbers of kLoadsTogether loads, one after the other. A kernel on
-// fields is a template of what lies at a node, a number or a Together of numbers. The numbers that a stencil needs are
-// then whole registers, small levels cost no more per node than large ones, and what belongs to the plate is read once
-// for all loads. The arithmetic of each load is that of a field of its own, to the bit.
+// Loads side by side: at each node a field then has the numbers of kLoadsTogether loads, one after the other. A kernel
+// on fields is a template of what lies at a node, a number or a Together of numbers. The numbers that a stencil needs
+// are then whole registers, small levels cost no more per node than large ones, and what belongs to the plate is read
+// once for all loads. The arithmetic of each load is that of a field of its own, to the bit.
 
 namespace palp::PALPATE_ISA {
 

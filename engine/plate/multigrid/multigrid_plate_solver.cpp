@@ -46,20 +46,21 @@ using compute::Intent;
 using compute::Kernel;
 using Clock = std::chrono::steady_clock;
 
-/// Steps of a list: what a list has left when the solve is finished runs empty, which costs hardware a microsecond for each
-/// dispatch. The shortest one that holds the steps of the last solve is run; the answer is the same whichever it is.
+/// Steps of a list: what a list has left when the solve is finished runs empty, which costs hardware a microsecond for
+/// each dispatch. The shortest one that holds the steps of the last solve is run; the answer is the same whichever it
+/// is.
 constexpr std::array kStepsOfLists{1, 2, 4};
 constexpr int        kMostGroups = 65535; ///< along x of a dispatch, on every processor
 
 constexpr double kRounding = 1e-7; ///< error of rigidities and answer in floats, twice 6e-8 rounded [1]
 
-/// Error of conjugate gradients in floats, up to contrast 1000 where the rigidity jumps, and whatever the contrast where
-/// it does not [1]. Beyond, it grows with the contrast: measured on discs in plates that one side, two or all hold, 20 to
-/// 64 cells, up to 4.8e-5 at 1000, 4.3e-4 at 1e4, 3.5e-3 at 1e5 and 2.6e-2 at 1e6.
+/// Error of conjugate gradients in floats, up to contrast 1000 where the rigidity jumps, and whatever the contrast
+/// where it does not [1]. Beyond, it grows with the contrast: measured on discs in plates that one side, two or all
+/// hold, 20 to 64 cells, up to 4.8e-5 at 1000, 4.3e-4 at 1e4, 3.5e-3 at 1e5 and 2.6e-2 at 1e6.
 constexpr double kFloatRounding = 5e-5, kRoundedContrast = 1000;
 
-/// Exact rims take less time than sweeps of tiles if their factors do not take more work [multiplications per node], per
-/// load that is solved with them. Where strong jumps need many sweeps more work pays.
+/// Exact rims take less time than sweeps of tiles if their factors do not take more work [multiplications per node],
+/// per load that is solved with them. Where strong jumps need many sweeps more work pays.
 constexpr double kRimWork = 300, kStrongRimWork = 5000;
 
 /// Memory that the host writes for a buffer: the buffer itself where it is mapped, else memory that a list copies.
@@ -448,8 +449,8 @@ struct MultigridPlateSolver::Impl {
     [[nodiscard]] SolveReport iterate(Clock::time_point began)
     {
         constexpr int kBeyond = 2; // steps that are tried where it takes more than the last solve did
-        // Where the rigidity jumps a first step is not judged, see takeGradientSteps(): a list that ends with it would be,
-        // by the host.
+        // Where the rigidity jumps a first step is not judged, see takeGradientSteps(): a list that ends with it would
+        // be, by the host.
         const int             least = jumps == Jumps::none ? 1 : 2;
         CommandList*          list  = &run(&Lists::begin, &Impl::recordBegin, std::max(lastSteps, least));
         int                   done  = int(worst(shared::kStateSteps));

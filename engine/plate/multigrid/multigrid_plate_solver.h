@@ -119,8 +119,9 @@ public:
     ///
     /// report.errorEstimate estimates the error relative to the answer in the energy norm, from the gains of the last
     /// steps, and includes rounding; converged is false after maxIterations, if rounding() exceeds the tolerance, or if
-    /// rounding hides how a part of the plate is held; iterations counts steps of conjugate gradients on the finest grid; workUnits include the nested
-    /// iteration. Every solution has the same report, of the whole batch and its worst load.
+    /// rounding hides how a part of the plate is held; iterations counts steps of conjugate gradients on the finest
+    /// grid; workUnits include the nested iteration. Every solution has the same report, of the whole batch and its
+    /// worst load.
     /// \throws Error if a load is not finite
     /// \throws SolverBrokeDown if an estimate or a deflection is not
     /// \throws compute::ProcessorLost if the processor fails

@@ -44,7 +44,8 @@ struct MultigridShellSolver::Impl {
         makeLevels(shell, *host.kernels, levels);
         const std::vector<std::ptrdiff_t> before(coarse.places().begin(), coarse.places().end());
         coarse.factorise(levels.back(), *host.kernels);
-        // The coarsest level's answer is written where there are unknowns: elsewhere its vectors keep what they were made of.
+        // The coarsest level's answer is written where there are unknowns: elsewhere its vectors keep what they were
+        // made of.
         if (!(sameGrid && std::ranges::equal(before, coarse.places()))) {
             alone.reset();
             together.reset();

@@ -25,7 +25,8 @@ enum class CoarsestShell {
 /// \thread one at a time, together with its context
 class ShellKernels {
 public:
-    /// Returns whether the processor can have them: it is one of Vulkan, has doubles, and its workgroups are large enough.
+    /// Returns whether the processor can have them: it is one of Vulkan, has doubles, and its workgroups are large
+    /// enough.
     [[nodiscard]] static bool suit(const compute::Context& context) noexcept;
 
     /// \pre suit(context)
@@ -54,10 +55,11 @@ struct ShellAnswer {
 /// Solves thin shallow shells by multigrid: conjugate gradients on both fields together, preconditioned by one
 /// symmetric V cycle whose relaxation changes both fields of a node at once.
 ///
-/// The cycle is in floats on assembled rows, conjugate gradients and their operator are in doubles. The host takes loads by
-/// eights, whose fields are floats then, and so is the operator that gives the length of their last step; a processor of Vulkan takes them all at once, each as the host solves one alone (to
-/// the bit on lavapipe, with CoarsestShell::byFactors). Three or more loads together may stop after one step, so that their
-/// answers hang on each other within the tolerance. The host assembles rows and factors for both.
+/// The cycle is in floats on assembled rows, conjugate gradients and their operator are in doubles. The host takes
+/// loads by eights, whose fields are floats then, and so is the operator that gives the length of their last step; a
+/// processor of Vulkan takes them all at once, each as the host solves one alone (to the bit on lavapipe, with
+/// CoarsestShell::byFactors). Three or more loads together may stop after one step, so that their answers hang on each
+/// other within the tolerance. The host assembles rows and factors for both.
 ///
 /// The matrix is indefinite, so that conjugate gradients minimise nothing; the products of their formulas may be
 /// negative, and steps are as many as the plate takes, or two more (7 at most to 1e-4 in the compliance, for discs of

@@ -15,9 +15,9 @@ struct LargeState {
     int       steps = 0;      ///< of Newton's method from the state before
 };
 
-/// The oracle of large deflections: presses a shell as deep as told, one depth after the other, by Newton's method on both
-/// fields with all of the energy's second derivative, factorised anew in each step. The depth is held and the force is
-/// an unknown, so that a force that falls as the shell snaps through is followed too.
+/// The oracle of large deflections: presses a shell as deep as told, one depth after the other, by Newton's method on
+/// both fields with all of the energy's second derivative, factorised anew in each step. The depth is held and the
+/// force is an unknown, so that a force that falls as the shell snaps through is followed too.
 /// \param unitLoad  forces at the nodes, 1 N together
 /// \param depths    [m] ascending, in steps of at most some thicknesses; below zero: pulled
 /// \throws Error as ReferenceShellSolver, or if Newton's method does not converge within 40 steps

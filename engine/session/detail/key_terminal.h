@@ -17,8 +17,8 @@ public:
     /// Returns true if standard input is a terminal and the program is in its foreground: another one would be stopped.
     [[nodiscard]] static bool ours() noexcept;
 
-    /// Stops the program (SIGSTOP), with its terminal as it was before, and returns when it goes on. For signal handlers
-    /// too.
+    /// Stops the program (SIGSTOP), with its terminal as it was before, and returns when it goes on. For signal
+    /// handlers too.
     static void stopProgram() noexcept;
 
 private:

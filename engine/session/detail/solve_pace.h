@@ -23,8 +23,8 @@ public:
         return solve_ + period_ / 2;
     }
 
-    /// Notes that it took so long [s]. One that took longer than half a second was held up, as by a debugger, unless the
-    /// next one takes as long.
+    /// Notes that it took so long [s]. One that took longer than half a second was held up, as by a debugger, unless
+    /// the next one takes as long.
     void ended(double took) noexcept
     {
         const bool isLong = took > kLongest;

@@ -40,8 +40,8 @@ constexpr int kNoGpu       = 4; // 3 is a missing package, see engine/prepare.sh
 
 constexpr const char* kUnprinted = "standard output cannot be written";
 
-/// Flushes both libraries' output and checks that it has been written. Where its reader has gone, as head does, that ends
-/// the program without a word, as it ends others; but only here, not in the middle of a session.
+/// Flushes both libraries' output and checks that it has been written. Where its reader has gone, as head does, that
+/// ends the program without a word, as it ends others; but only here, not in the middle of a session.
 bool printed()
 {
     std::cout.flush();
@@ -136,8 +136,9 @@ bool isFor(std::errc reason, const std::exception& error)
 
 std::terminate_handler otherEnd = nullptr; ///< the library's: it says what nobody caught
 
-/// Says the same where nobody could catch it: while the program's own constants are made, and in what libraries call noexcept
-/// (CLI11 when it looks for an option, nlohmann-json when it takes a document apart). A device's guardian gives zero force.
+/// Says the same where nobody could catch it: while the program's own constants are made, and in what libraries call
+/// noexcept (CLI11 when it looks for an option, nlohmann-json when it takes a document apart). A device's guardian
+/// gives zero force.
 [[noreturn]] void endWithoutCatch() noexcept
 {
     try {
@@ -156,8 +157,8 @@ std::terminate_handler otherEnd = nullptr; ///< the library's: it says what nobo
     otherEnd = std::set_terminate(endWithoutCatch);
 }
 
-/// Takes the numbers of standard streams that the caller has closed: the first files that are opened would get them, and
-/// sentences would be written into a recording. Using such a stream fails, as if it were closed still.
+/// Takes the numbers of standard streams that the caller has closed: the first files that are opened would get them,
+/// and sentences would be written into a recording. Using such a stream fails, as if it were closed still.
 void keepStandardStreams()
 {
     for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})

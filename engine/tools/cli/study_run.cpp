@@ -275,7 +275,8 @@ void Sitting::tellUnfelt() const
                          "out\n";
 }
 
-/// Adds to a file what the participant must not read: it says what is touched. It is on the disk before the question is asked.
+/// Adds to a file what the participant must not read: it says what is touched. It is on the disk before the question is
+/// asked.
 void Sitting::keepWarnings(const std::vector<std::string>& sentences)
 {
     constexpr std::size_t kMost = std::size_t(16) << 20; // [bytes]

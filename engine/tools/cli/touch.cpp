@@ -247,7 +247,8 @@ void tellTakeover(std::string sentence, const Patch& patch, double tolerance)
     sayTakeover(sentence);
 }
 
-/// Says how far from a place that was asked for the touched point lies; empty where the points' own distances explain it.
+/// Says how far from a place that was asked for the touched point lies; empty where the points' own distances explain
+/// it.
 std::string placeDoubt(const Scene& scene, const Patch& patch)
 {
     constexpr double kExplained = 2; // spacings [1]

@@ -16,8 +16,8 @@ struct Estimate {
     double value = 0, low = 0, high = 0;
 };
 
-/// Writes an estimate with its interval: "300 N/m (290 N/m to 310 N/m)", or "300 N/m (+- 0.012 %)" where the ends would be
-/// the same digits as the value.
+/// Writes an estimate with its interval: "300 N/m (290 N/m to 310 N/m)", or "300 N/m (+- 0.012 %)" where the ends would
+/// be the same digits as the value.
 [[nodiscard]] std::string intervalText(const Estimate& estimate, std::string_view siUnit);
 
 /// A law that was tried on a probe.

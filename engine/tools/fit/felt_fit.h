@@ -36,10 +36,10 @@ struct FeltFit {
 ///
 ///     E <- E (S[measured / felt])^(4/3)
 ///
-/// where S is the mean of the logarithms over a Gaussian, its deviation twice the tip's radius. Felt stiffness goes as E^(1/2) (the
-/// plate alone) to E^1 (the contact alone), so with that exponent an error loses two thirds in a step at either end.
-/// What is finer than a touch S takes out: it cannot be told from noise and is left as residual. For the same reason it
-/// ends when a step corrects less than half of what was left.
+/// where S is the mean of the logarithms over a Gaussian, its deviation twice the tip's radius. Felt stiffness goes as
+/// E^(1/2) (the plate alone) to E^1 (the contact alone), so with that exponent an error loses two thirds in a step at
+/// either end. What is finer than a touch S takes out: it cannot be told from noise and is left as residual. For the
+/// same reason it ends when a step corrects less than half of what was left.
 /// \param start     what was measured: its points, material, foundation and first guess of the modulus [Pa]
 /// \param measured  felt stiffness at each of its points [N/m]
 /// \throws Error if nothing can be touched

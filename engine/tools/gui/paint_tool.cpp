@@ -12,7 +12,8 @@
 namespace palp {
 namespace {
 
-/// Reads again what the object's file says beside the stiffness; empty where it does not have the object's points any more.
+/// Reads again what the object's file says beside the stiffness; empty where it does not have the object's points any
+/// more.
 std::optional<LoadedCloud> asOpened(const Stage& stage)
 {
     try {

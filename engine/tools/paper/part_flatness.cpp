@@ -144,8 +144,8 @@ std::vector<Pair> addEllipsoid(Section& section, const WholeEllipsoid& whole, co
     return pairs;
 }
 
-/// The lobe's faces bulge to either side, so that its middle is flat: a touch that is asked for a shell sees that, and bends
-/// it as the plate that it is.
+/// The lobe's faces bulge to either side, so that its middle is flat: a touch that is asked for a shell sees that, and
+/// bends it as the plate that it is.
 void addLobe(Section& section, const ReportRun& run)
 {
     const Sample&    sample = sampleNamed("ear-lobe");

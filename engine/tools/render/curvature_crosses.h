@@ -13,8 +13,8 @@ struct CurvatureCrosses {
     std::vector<ViewSegment> hollow;  ///< where it is hollow along the stroke [m]
 };
 
-/// Returns the curvature that a patch bent with as crosses, spread evenly over its window: a stroke lies along a principal
-/// direction, and is as long as the curvature is strong beside the strongest of the picture.
+/// Returns the curvature that a patch bent with as crosses, spread evenly over its window: a stroke lies along a
+/// principal direction, and is as long as the curvature is strong beside the strongest of the picture.
 /// \param rest       positions of the cloud at rest [m]
 /// \param positions  where its points are drawn [m], as many
 /// \param normals    of the surface at rest [1], as many; their side does not matter

@@ -24,8 +24,8 @@ struct Near {
 
 constexpr double kFar = 4; ///< spacings beyond which there is no surface [1]
 
-/// Returns whether a place is within a distance of the sides of the window, or, where the window spans the object, of its
-/// border.
+/// Returns whether a place is within a distance of the sides of the window, or, where the window spans the object, of
+/// its border.
 bool isNearEdge(const Patch& patch, const ChartPoint& p, double far)
 {
     const PlateGrid& grid = patch.window.grid;
@@ -84,8 +84,8 @@ std::optional<glm::dvec3> residualAt(const std::vector<Near>& points, const Char
     return sum / count;
 }
 
-/// The border of an object that the window spans: in each cell where the covered share passes a half, the line between two
-/// of its sides.
+/// The border of an object that the window spans: in each cell where the covered share passes a half, the line between
+/// two of its sides.
 std::vector<PatchSurface::EdgePlace> borderOf(const Patch& patch, std::span<const glm::dvec3> positions)
 {
     const PlateGrid&                     grid   = patch.window.grid;

@@ -13,8 +13,8 @@ struct ShapeCorner {
     bool       shinesThrough = true; ///< is seen, faintly, where the surface hides it
 };
 
-/// Returns the triangles of a scene's proxy, HIP, stylus, arrows and lines, three corners each. Strokes of curvature, which
-/// are many and cover a body's far side too, do not shine through the surface, and come last.
+/// Returns the triangles of a scene's proxy, HIP, stylus, arrows and lines, three corners each. Strokes of curvature,
+/// which are many and cover a body's far side too, do not shine through the surface, and come last.
 [[nodiscard]] std::vector<ShapeCorner> shapesOf(const ViewScene& scene);
 
 } // namespace palp

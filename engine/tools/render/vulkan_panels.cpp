@@ -102,8 +102,8 @@ void VulkanPanels::stop()
     ImGuiIO& io = ImGui::GetIO();
     if (!io.BackendRendererUserData) return;
     if (!context_.atWork() && !isBroken_) return ImGui_ImplVulkan_Shutdown();
-    // A driver that never finished uses what would be freed, and a back end that failed may have freed it already: it is
-    // left behind, and ImGui forgets it.
+    // A driver that never finished uses what would be freed, and a back end that failed may have freed it already: it
+    // is left behind, and ImGui forgets it.
     leftBehind().push_back(io.BackendRendererUserData);
     io.BackendRendererUserData = nullptr;
     io.BackendRendererName     = nullptr;

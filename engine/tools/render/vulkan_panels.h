@@ -18,8 +18,8 @@ public:
     VulkanPanels(const VulkanPanels&)            = delete;
     VulkanPanels& operator=(const VulkanPanels&) = delete;
 
-    /// Records the result of ImGui::Render() into the pass that is being recorded. Once that has thrown, the object is of no
-    /// more use.
+    /// Records the result of ImGui::Render() into the pass that is being recorded. Once that has thrown, the object is
+    /// of no more use.
     void               record(VkCommandBuffer commands);
     [[nodiscard]] bool isBroken() const noexcept { return isBroken_; } ///< it has thrown
 

@@ -12,9 +12,9 @@
 
 namespace palp::study {
 
-/// A ball of another stiffness under the surface. In the sheet, at its radius the modulus is the geometric mean of those
-/// inside and outside; it fades over a quarter of the radius to either side, so that no edge is sharper than points can
-/// show. Below the sheet it is a BuriedNodule, which no picture of the stiffness shows.
+/// A ball of another stiffness under the surface. In the sheet, at its radius the modulus is the geometric mean of
+/// those inside and outside; it fades over a quarter of the radius to either side, so that no edge is sharper than
+/// points can show. Below the sheet it is a BuriedNodule, which no picture of the stiffness shows.
 struct Nodule {
     glm::dvec3 centre{};    ///< [m] on the object
     double     radius  = 0; ///< [m]

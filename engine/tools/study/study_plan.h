@@ -57,9 +57,9 @@ struct StudyPlan {
     std::string            canonical; ///< all that defines the study, as one text, to compare plans
 };
 
-/// Reads a plan: JSON, comments allowed. Scenes, and the file of a hand, are paths from the plan's folder. A condition's
-/// "preset" and "values" override its scene as flags do, and "values" override "preset". Environment variables have no
-/// effect, so that the plan defines the study.
+/// Reads a plan: JSON, comments allowed. Scenes, and the file of a hand, are paths from the plan's folder. A
+/// condition's "preset" and "values" override its scene as flags do, and "values" override "preset". Environment
+/// variables have no effect, so that the plan defines the study.
 /// \throws Error naming the file, the condition or task, the key, what was expected and found
 [[nodiscard]] StudyPlan readPlan(const std::filesystem::path& file);
 

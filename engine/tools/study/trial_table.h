@@ -35,8 +35,8 @@ struct TrialRow {
 /// append() returns, so that a crash loses at most the current trial.
 class TrialTable {
 public:
-    /// Creates the table, or opens an existing one; a line that was cut is removed, and to one of an earlier version the
-    /// column that it lacks is added, empty.
+    /// Creates the table, or opens an existing one; a line that was cut is removed, and to one of an earlier version
+    /// the column that it lacks is added, empty.
     /// \throws Error naming the file and the reason
     explicit TrialTable(std::filesystem::path file);
 

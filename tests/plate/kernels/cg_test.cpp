@@ -230,7 +230,8 @@ protected:
 
         std::vector<std::uint32_t> wanted(100, 5);
         if (host::step(push, partials, shape.x, expected)) std::fill(wanted.begin(), wanted.end() - 3, 0U);
-        // Where a share is 1 but for its rounding, the square root of 1 - share, which is 0 or nearly so, is that of rounding.
+        // Where a share is 1 but for its rounding, the square root of 1 - share, which is 0 or nearly so, is that of
+        // rounding.
         const double        root  = std::sqrt(double(std::numeric_limits<Real>::epsilon()));
         std::vector<double> sizes = ownSizes(expected);
         for (std::size_t at = 0; at < expected.size(); at += std::size_t(shared::kStateWords)) {

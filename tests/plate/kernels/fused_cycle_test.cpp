@@ -56,8 +56,8 @@ struct Levels {
         return both;
     }
 
-    /// The coarsest level's answer, in the order of plate_tail.glsl: as many parts as a workgroup has invocations for, each
-    /// in four sums.
+    /// The coarsest level's answer, in the order of plate_tail.glsl: as many parts as a workgroup has invocations for,
+    /// each in four sums.
     template <class Real>
     [[nodiscard]] std::vector<float> coarsest(const std::vector<float>& force, const std::vector<Real>& inverse,
                                               std::size_t lanes) const
@@ -346,8 +346,8 @@ TEST_F(FusedCycleTest, TheWayUpAims)
                               out(partials), inOut(tickets), inOut(state)},
                              shared::UpPush{level.g, pair.coarse, begins}, groups);
                 EXPECT_TRUE(agree(measured, z, sizesOf(z), kCycleRounding));
-                // The deflection of which the products are is of floats, in either precision; beta is a product over one
-                // of 0.5 or more.
+                // The deflection of which the products are is of floats, in either precision; beta is a product over
+                // one of 0.5 or more.
                 constexpr double kOfFloats =
                     std::numeric_limits<float>::epsilon() / std::numeric_limits<Real>::epsilon();
                 std::vector<double> sizes(state.size(), 0.0);

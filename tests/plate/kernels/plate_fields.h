@@ -65,8 +65,8 @@ inline std::string describe(const Plate& plate)
            name(plate.edges.z1) + (plate.foundationShape.values().empty() ? "" : ", on a rough bed");
 }
 
-/// The finest level of a plate and its rigidity as the shaders are given it, the largest being 1; behind it, if there is
-/// one, the foundation's shape.
+/// The finest level of a plate and its rigidity as the shaders are given it, the largest being 1; behind it, if there
+/// is one, the foundation's shape.
 struct RoughLevel {
     shared::PlateLevel g;
     std::vector<float> rigidity;

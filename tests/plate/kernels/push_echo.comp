@@ -2,7 +2,8 @@
 // Domain     one invocation
 // Reads      push
 // Writes     bits of the fields
-// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS, ECHO_AIM, ECHO_PROBE; ECHO_TAIL and ECHO_RIGIDITY with an array of structs
+// Variants   ECHO_LEVEL, ECHO_RELAX, ECHO_SMOOTH, ECHO_TRANSFER, ECHO_VECTOR, ECHO_SCALARS, ECHO_AIM, ECHO_PROBE;
+// ECHO_TAIL and ECHO_RIGIDITY with an array of structs
 #version 460
 #extension GL_GOOGLE_include_directive : require
 

@@ -366,8 +366,8 @@ TEST_F(MultigridPlate, TheCommandsOfEachScheduleAreCounted)
     EXPECT_GT(MultigridPlateSolver(context(), onePassEach, disc, {}).commands().cycle, 3 * sharp.cycle);
 }
 
-/// The goal of engine/performance.md. Conjugate gradients on all levels share the memory of the finest one's; each level
-/// with memory of its own would take 10 MB more, and a result besides A p 4 MB more.
+/// The goal of engine/performance.md. Conjugate gradients on all levels share the memory of the finest one's; each
+/// level with memory of its own would take 10 MB more, and a result besides A p 4 MB more.
 TEST_F(MultigridPlate, OneLoadOn1025NodesTakesLessThan70MB)
 {
     if (!onHost()) GTEST_SKIP() << "on other processors the host's copies are counted too";
@@ -490,7 +490,8 @@ TEST_F(MultigridPlate, EveryEdgeOnEveryGroundAgreesWithTheReferenceUnderEverySch
     }
 }
 
-/// Bone below fat: a disc on which the foundation is a thousand times as stiff, a strip without any, and a gentle slope.
+/// Bone below fat: a disc on which the foundation is a thousand times as stiff, a strip without any, and a gentle
+/// slope.
 double bed(double x, double z)
 {
     if (std::hypot(x - 0.4, z - 0.55) < 0.15) return 1000;
@@ -625,7 +626,8 @@ TEST_F(MultigridPlate, TheEstimateIsNeverBelowTheErrorByMoreThanAFactorOfThree)
 
 /// To a true error, not to an estimate: each tolerance stops after one more step, until the error is small enough.
 /// The bars are those set for the solver at its design; measured 3 and 5, 5 and 9, 9 and 13 up to 129 nodes. The
-/// host's steps smooth less, so that a disc of 1000 takes it more of them where its rim is not solved exactly: 15 and 22.
+/// host's steps smooth less, so that a disc of 1000 takes it more of them where its rim is not solved exactly: 15 and
+/// 22.
 TEST_F(MultigridPlate, StepsToATrueErrorAreFewWhateverTheSize)
 {
     const auto most = [](const Law& law) -> std::pair<int, int> { // to 1e-4 and to 1e-6
@@ -654,8 +656,8 @@ TEST_F(MultigridPlate, StepsToATrueErrorAreFewWhateverTheSize)
         }
 }
 
-/// Rims that are solved exactly make steps few whatever the contrast: tiles took 14 to 76 of them here. Measured 8 for the
-/// disc of 1000, 9 and 11 for 1e5, 9 for 1e6 and 6 to 8 for the others.
+/// Rims that are solved exactly make steps few whatever the contrast: tiles took 14 to 76 of them here. Measured 8 for
+/// the disc of 1000, 9 and 11 for 1e5, 9 for 1e6 and 6 to 8 for the others.
 TEST_F(MultigridPlate, ExactRimsTakeFewStepsWhateverTheContrast)
 {
     if (!onHost()) GTEST_SKIP() << "only the host solves rims exactly";
@@ -792,7 +794,8 @@ double energyOf(const Plate& plate, const NodeField& w)
     return sum;
 }
 
-/// The solves of which the estimate used to be too small by up to 5.5: discs, two loads, on the host with both smoothers.
+/// The solves of which the estimate used to be too small by up to 5.5: discs, two loads, on the host with both
+/// smoothers.
 TEST_F(MultigridPlate, TheErrorsEnergyIsAtMostTwoAndAHalfTimesTheEstimateWhateverTheDisc)
 {
     if (watched()) GTEST_SKIP() << "time";

@@ -361,8 +361,8 @@ TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
     }
 }
 
-/// Every reading of the clock is later than the last one: by `slow` while the processor is tried, which comes first, and
-/// by 1 while the host is.
+/// Every reading of the clock is later than the last one: by `slow` while the processor is tried, which comes first,
+/// and by 1 while the host is.
 PlateSolver::Clock clockThatSays(double slow)
 {
     return [slow, time = 0.0, readings = 0]() mutable { return time += ++readings <= 6 ? slow : 1; };

@@ -16,8 +16,8 @@ using Make = std::function<std::unique_ptr<DirectSolver>(const PlateMatrix&)>;
 /// As a benchmark does it: analysed for one map, then given the numbers of others.
 void agreesWithTheReference(const Make& make, const PlateEdges& edges, double foundation)
 {
-    // Condition of 33 nodes, 1e5, times the rounding of doubles, and room. A direct solver does not refine its answer, so
-    // that it loses as many digits as the contrast has: measured 1e-8 to 1e-7 at a disc of 1e5.
+    // Condition of 33 nodes, 1e5, times the rounding of doubles, and room. A direct solver does not refine its answer,
+    // so that it loses as many digits as the contrast has: measured 1e-8 to 1e-7 at a disc of 1e5.
     constexpr double kAgree = 1e-9, kAgreeBeyond = 1e-6, kStrong = 1e4; // [1]
     Plate            first = plateOf(maps().front(), 33);
     first.edges            = edges;

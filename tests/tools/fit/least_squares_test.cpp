@@ -36,7 +36,8 @@ TEST(LeastSquares, StopsAtABoundAndFindsTheRest)
 
 TEST(LeastSquares, DeviationsAreThoseOfALine)
 {
-    // y = 1 + 2 x at 0..3 with residuals 1, -1, -1, 1: s^2 = 4 / 2, of the slope s^2 / 5, of the start s^2 (1/4 + 9/20).
+    // y = 1 + 2 x at 0..3 with residuals 1, -1, -1, 1: s^2 = 4 / 2, of the slope s^2 / 5, of the start s^2 (1/4 +
+    // 9/20).
     constexpr std::array           kY{2.0, 2.0, 4.0, 8.0};
     const std::array<Parameter, 2> start{{{0, -10, 10}, {0, -10, 10}}};
     const LeastSquares             fit = leastSquares(start, 4, [&](std::span<const double> p, std::span<double> r) {

@@ -83,8 +83,8 @@ TEST(Bunny, AsAThinSkinItsBallIsFarStifferThanAPlate)
     addCurvedBunny(run.section, folder / "ball.ply", {.solver = run.solver, .renderer = run.renderer, .quick = true});
     const auto& times = run.section.number("bunny/shell_over_plate");
     ASSERT_FALSE(times.empty());
-    // Under a point a sphere gives way by l^2 / (8 D) (Reissner 1946), a clamped square by 0.0056 a^2 / D: 1.8 times, and
-    // less under a fingertip.
+    // Under a point a sphere gives way by l^2 / (8 D) (Reissner 1946), a clamped square by 0.0056 a^2 / D: 1.8 times,
+    // and less under a fingertip.
     EXPECT_GT(*std::max_element(times.begin(), times.end()), 1.4);
 }
 

@@ -126,8 +126,8 @@ TEST(CloudSkin, NormalsOfClosedObjectsPointOutwards)
     }
 }
 
-/// Points strewn over a tetrahedron, each with the normal of its side: across every edge normals turn by 109 degrees, so
-/// that one that is handed on as it is comes to lie inside.
+/// Points strewn over a tetrahedron, each with the normal of its side: across every edge normals turn by 109 degrees,
+/// so that one that is handed on as it is comes to lie inside.
 std::pair<std::vector<glm::dvec3>, std::vector<glm::dvec3>> tetrahedron(std::size_t points)
 {
     constexpr double                       kHalf     = 0.02; // half the edge of the cube round it [m]

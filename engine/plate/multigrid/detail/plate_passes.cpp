@@ -23,8 +23,8 @@ using compute::Groups;
 using compute::Intent;
 using compute::Kernel;
 
-/// Returns the steps on a coarser level of the nested iteration: two on more than the last one change the answer by less
-/// than its error.
+/// Returns the steps on a coarser level of the nested iteration: two on more than the last one change the answer by
+/// less than its error.
 constexpr int stepsOf(std::size_t level)
 {
     return level == 1 ? 2 : 1;
@@ -62,8 +62,8 @@ int rimOfUp(int sweeps)
     return shared::kRimPerSweep * sweeps;
 }
 
-/// \throws compute::ProcessorOutOfMemory if a dispatch over all rows would have more workgroups than every processor takes:
-///         the host has none, and takes over
+/// \throws compute::ProcessorOutOfMemory if a dispatch over all rows would have more workgroups than every processor
+///         takes: the host has none, and takes over
 void checkLength(const compute::Context& context, const PlateKernels::All& k, const RigidityLayout& layout)
 {
     constexpr std::uint32_t kMostGroups = 65535; // along y of a dispatch, on every processor
@@ -487,9 +487,9 @@ void PlatePasses::takeGradientSteps(Recorder& pass, std::size_t l, int count, in
     }
 }
 
-// Takes the same steps in fewer dispatches. Every second direction, and where regions take steps every second residual, lies
-// in a memory of its own; a list ends with those that the next one begins with in the first memory. Of the tail's steps that
-// is so if their number is even, or one.
+// Takes the same steps in fewer dispatches. Every second direction, and where regions take steps every second residual,
+// lies in a memory of its own; a list ends with those that the next one begins with in the first memory. Of the tail's
+// steps that is so if their number is even, or one.
 void PlatePasses::takeFusedSteps(Recorder& pass, std::size_t l, int count, int sweeps, std::uint32_t begins,
                                  double tolerance)
 {

@@ -26,9 +26,9 @@ struct LevelBuffers {
     compute::Binding marks, tiles; ///< where the rigidity jumps: a flag per tile; number of tiles, then their indices
     compute::Buffer  load;         ///< force of the nested iteration, floats
 
-    // Conjugate gradients run on one level after another, and all levels share the memory of the finest one's. An answer
-    // and its residual change places from level to level: a level interpolates the answer of the next coarser one, and
-    // needs its residual's memory only when that answer has been used.
+    // Conjugate gradients run on one level after another, and all levels share the memory of the finest one's. An
+    // answer and its residual change places from level to level: a level interpolates the answer of the next coarser
+    // one, and needs its residual's memory only when that answer has been used.
     const compute::Buffer &answer, &left, &direction, &forces; ///< x, r, p, A p, real
     const compute::Buffer &otherDirection, &otherLeft; ///< real: where the schedule is fused, every second p and r
 

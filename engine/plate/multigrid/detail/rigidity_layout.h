@@ -7,7 +7,8 @@
 
 namespace palp {
 
-/// The levels next to each other in arrays that hold all of them, where a kernel that knows only one finds its part, too.
+/// The levels next to each other in arrays that hold all of them, where a kernel that knows only one finds its part,
+/// too.
 struct RigidityLayout {
     std::vector<shared::RigidityLevel> levels;
     std::size_t                        numbers = 0, words = 0; ///< of rigidities or divisors; of marks or lists

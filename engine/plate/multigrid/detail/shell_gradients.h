@@ -17,11 +17,11 @@ struct Gradients {
     int    steps        = 0;
     bool   done = false, converged = false;
 
-    /// The root of the work that is missing, over the work [1]. After the first step only missingAfter() knows. Then steps
-    /// to come gain as much less as the last one did, but no less than a tenth of it and 3 % of the step before, because a
-    /// gain may be small by chance where the matrix is indefinite. Of 100 shells each with linear, wart, disc and random
-    /// maps, random curvatures and edges, at tolerances of 1e-2, 1e-3 and 1e-4, 7 of the 1200 works miss their tolerance's
-    /// square, six of them on random maps, by up to five times.
+    /// The root of the work that is missing, over the work [1]. After the first step only missingAfter() knows. Then
+    /// steps to come gain as much less as the last one did, but no less than a tenth of it and 3 % of the step before,
+    /// because a gain may be small by chance where the matrix is indefinite. Of 100 shells each with linear, wart, disc
+    /// and random maps, random curvatures and edges, at tolerances of 1e-2, 1e-3 and 1e-4, 7 of the 1200 works miss
+    /// their tolerance's square, six of them on random maps, by up to five times.
     [[nodiscard]] double estimate() const
     {
         constexpr double kBest = 0.1, kBestOfTwo = 0.03; // gains over those of one and two steps before [1]
@@ -77,8 +77,8 @@ private:
         }
     }
 
-    /// Returns how far each load goes along p. Where that says nothing, p becomes what the cycle alone would do, and q what
-    /// belongs to it: the direction that gave such a number is not used at all.
+    /// Returns how far each load goes along p. Where that says nothing, p becomes what the cycle alone would do, and q
+    /// what belongs to it: the direction that gave such a number is not used at all.
     PerLoad lengths()
     {
         const PerLoad pq     = fields_.useDirection();
@@ -111,9 +111,9 @@ private:
             if (!states_[n].done) judge(states_[n], alphas[n], works[n], restarted_[n] != 0, tolerance);
     }
 
-    /// Goes along p if all loads end with that. A last step asks for no residual, and its length may be found in floats,
-    /// in half the time: the work lacks as much of the gain as the length is wrong, by 3e-6 where it was compared, at up
-    /// to 129 nodes a side.
+    /// Goes along p if all loads end with that. A last step asks for no residual, and its length may be found in
+    /// floats, in half the time: the work lacks as much of the gain as the length is wrong, by 3e-6 where it was
+    /// compared, at up to 129 nodes a side.
     bool endsRoughly(double tolerance, bool first)
     {
         PerLoad alphas = fields_.none();
@@ -159,13 +159,14 @@ private:
         state.done      = state.converged || !std::isfinite(state.work);
     }
 
-    /// Judges loads that are solved together by what the first step gains for that one for which it gains most: one gain
-    /// may be small by chance, but hardly all of three or more. After it 0.2 % of it is missing at the median, and 2.5 % at
-    /// the 99th of 100 loads where the map is smooth; where it jumps, so much is gained that hardly anything stops here.
+    /// Judges loads that are solved together by what the first step gains for that one for which it gains most: one
+    /// gain may be small by chance, but hardly all of three or more. After it 0.2 % of it is missing at the median, and
+    /// 2.5 % at the 99th of 100 loads where the map is smooth; where it jumps, so much is gained that hardly anything
+    /// stops here.
     ///
-    /// Of 11844 loads on shells with constant, linear, bell-shaped and wavy maps and discs, of any edges and curvatures and
-    /// with and without a foundation, 1990 stop here at a tolerance of 1e-2, and nine of these miss its square, at worst by
-    /// 13 times: as many of a hundred as miss it by estimate().
+    /// Of 11844 loads on shells with constant, linear, bell-shaped and wavy maps and discs, of any edges and curvatures
+    /// and with and without a foundation, 1990 stop here at a tolerance of 1e-2, and nine of these miss its square, at
+    /// worst by 13 times: as many of a hundred as miss it by estimate().
     ///
     /// \return the share of a work that is missing [1]; infinite where the step tells nothing of it
     [[nodiscard]] double missingAfter(const PerLoad& alphas) const

@@ -37,12 +37,13 @@ public:
     }
     /// Returns the last call's answer.
     [[nodiscard]] const std::vector<float>& last() const { return fields_.front().x; }
-    /// Gives the answer of the last precondition() or start() away, for memory of the same size that is 0 where nothing moves.
+    /// Gives the answer of the last precondition() or start() away, for memory of the same size that is 0 where nothing
+    /// moves.
     void giveLast(std::vector<float>& to) { fields_.front().x.swap(to); }
     void giveStart(std::vector<float>& to) { fields_.front().guess.swap(to); }
 
-    /// Returns an answer by nested iteration: that of the coarsest level, refined, and on each level between improved by
-    /// one cycle alone. (A step of conjugate gradients there may break down.)
+    /// Returns an answer by nested iteration: that of the coarsest level, refined, and on each level between improved
+    /// by one cycle alone. (A step of conjugate gradients there may break down.)
     const std::vector<float>& start(const std::vector<float>& b)
     {
         const std::size_t last = fields_.size() - 1;

@@ -22,13 +22,14 @@ struct ShellKernels::All {
 #include "compute_shaders/shared/shell_passes.def"
 };
 
-/// Vectors of conjugate gradients on a processor of Vulkan, and the cycle that preconditions them; of any number of loads,
-/// each with the bits that HostShellFields<false> gives it, where the processor rounds as the host does and the coarsest level
-/// is solved by factors; but finish() ends what several loads gain together, as that of the host's eights does.
+/// Vectors of conjugate gradients on a processor of Vulkan, and the cycle that preconditions them; of any number of
+/// loads, each with the bits that HostShellFields<false> gives it, where the processor rounds as the host does and the
+/// coarsest level is solved by factors; but finish() ends what several loads gain together, as that of the host's
+/// eights does.
 ///
 /// Levels and factors are the host's, made in doubles and copied once per shell. A step is two submissions, because the
-/// host divides two numbers per load between them: the length of a step is known once its direction is, and whether there
-/// is a next one once its work is.
+/// host divides two numbers per load between them: the length of a step is known once its direction is, and whether
+/// there is a next one once its work is.
 class ProcessorShellFields {
 public:
     using PerLoad = std::vector<double>;
@@ -37,8 +38,8 @@ public:
     ProcessorShellFields(compute::Context& context, const ShellKernels::All& kernels,
                          const std::vector<ShellLevel>& levels, const ShellCoarseSolver& coarse, std::size_t loads);
 
-    /// Copies the coefficients of the levels, which must be those that it was made with; of another shell if its grid and
-    /// the unknowns of the coarsest level are the same.
+    /// Copies the coefficients of the levels, which must be those that it was made with; of another shell if its grid
+    /// and the unknowns of the coarsest level are the same.
     void setLevels(const ShellCoarseSolver& coarse);
 
     /// As those of HostShellFields.
