@@ -64,7 +64,7 @@ class RealSession {
 public:
     RealSession(const SessionParts& parts, const RealSessionSettings& settings)
         : parts_(parts), settings_(settings), deformation_(parts.solver, parts.scene.deformationRate),
-          contact_(parts.object, parts.scene),
+          contact_(parts.object, parts.scene, parts.from),
           force_(parts.scene, parts.frame.inScene(parts.device.info()), parts.first), clutch_(parts.frame.clutch)
     {
     }

@@ -203,6 +203,10 @@ RecordedSession readDescription(const std::filesystem::path& folder)
             const std::vector<double> weight = hand.numbers("weight_N", 3);
             session.hand.weight              = {weight[0], weight[1], weight[2]};
         }
+        if (hand.has("came_from_m")) {
+            const std::vector<double> from = hand.numbers("came_from_m", 3);
+            session.from                   = glm::dvec3(from[0], from[1], from[2]);
+        }
         const auto senses       = [&](const char* what) { return hand.has(what) && hand.json(what) == "true"; };
         session.hand.rotates    = senses("senses_orientation"); // older recordings do not say it
         session.hand.hasGripper = senses("senses_grip");

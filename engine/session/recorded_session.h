@@ -26,6 +26,7 @@ struct RecordedSession {
     std::string                  scene;            ///< JSON for parseScene()
     std::string                  cloud;            ///< fingerprint() of what was touched
     HapticDeviceInfo             hand;             ///< its model and limits
+    std::optional<glm::dvec3>    from;             ///< [m] SessionParts::from
     bool                         finished = false; ///< false: killed, or still running
     std::string                  whyIncomplete;    ///< what is missing, as the end of a sentence; empty: nothing
     std::optional<std::uint64_t> counted;          ///< ticks that session.json counts, once it is finished

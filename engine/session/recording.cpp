@@ -158,6 +158,15 @@ nlohmann::ordered_json describe(const SessionInfo& info)
     nlohmann::ordered_json origins = nlohmann::ordered_json::object();
     for (const auto& [key, origin] : info.scene.origins)
         origins[key] = name(origin.origin) + (origin.where.empty() ? "" : " " + origin.where);
+    nlohmann::ordered_json hand{{"model", info.hand.model},
+                                {"maximum_force_N", info.hand.maximumForce},
+                                {"maximum_stiffness_N_per_m", info.hand.maximumStiffness},
+                                {"mass_kg", info.hand.mass},
+                                {"own_damping_N_s_per_m", info.hand.ownDamping},
+                                {"weight_N", {info.hand.weight.x, info.hand.weight.y, info.hand.weight.z}},
+                                {"senses_orientation", info.hand.rotates},
+                                {"senses_grip", info.hand.hasGripper}};
+    if (info.from) hand["came_from_m"] = {info.from->x, info.from->y, info.from->z};
     return {{"format", kSessionFormat},
             {"versions", info.versions},
             {"started", now()},
@@ -167,15 +176,7 @@ nlohmann::ordered_json describe(const SessionInfo& info)
             {"clock", name(info.clock)},
             {"solver", info.solver},
             {"cloud", info.cloud},
-            {"hand",
-             {{"model", info.hand.model},
-              {"maximum_force_N", info.hand.maximumForce},
-              {"maximum_stiffness_N_per_m", info.hand.maximumStiffness},
-              {"mass_kg", info.hand.mass},
-              {"own_damping_N_s_per_m", info.hand.ownDamping},
-              {"weight_N", {info.hand.weight.x, info.hand.weight.y, info.hand.weight.z}},
-              {"senses_orientation", info.hand.rotates},
-              {"senses_grip", info.hand.hasGripper}}},
+            {"hand", std::move(hand)},
             {"scene", nlohmann::ordered_json::parse(sceneJson(info.scene))},
             {"origins", std::move(origins)},
             {"columns", std::move(columns)},

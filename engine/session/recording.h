@@ -35,6 +35,7 @@ struct SessionInfo {
     std::string                        command; ///< line by which the session was started
     std::string                        cloud{}; ///< fingerprint() of what is touched
     HapticDeviceInfo                   hand{};  ///< the device's model, and its limits, which bound the force
+    std::optional<glm::dvec3>          from{};  ///< [m] SessionParts::from
 };
 
 /// The result of a recording.

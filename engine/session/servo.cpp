@@ -38,9 +38,10 @@ GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits)
 
 } // namespace
 
-ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene)
+ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from)
     : proxy_(object, {scene.proxy, scene.staticFriction, scene.dynamicFriction})
 {
+    if (from) proxy_.step(*from);
 }
 
 const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept

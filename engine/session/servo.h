@@ -113,7 +113,9 @@ struct ProxyContact {
 class ContactHalf {
 public:
     /// \param object  outlives this
-    ContactHalf(const SoftObject& object, const Scene& scene);
+    /// \param from    [m] a place in free space from which the hand has come: a hand that begins behind a surface then
+    ///                touches it until it is lifted off, and is not held inside; empty: it begins in free space
+    ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from = {});
 
     /// Runs one tick of the proxy.
     /// \param time  [s] of the session's clock
@@ -250,8 +252,8 @@ inline constexpr double kCarried = 0.98;
 class Servo {
 public:
     Servo(const SoftObject& object, const Scene& scene, const HapticDeviceInfo& limits = {},
-          const HomogeneousLaw* first = nullptr)
-        : contact_(object, scene), force_(scene, limits, first)
+          const HomogeneousLaw* first = nullptr, const std::optional<glm::dvec3>& from = {})
+        : contact_(object, scene, from), force_(scene, limits, first)
     {
     }
 

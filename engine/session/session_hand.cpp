@@ -70,14 +70,24 @@ DeviceFrame frameOf(const SessionHand& hand, const Scene& scene, const SoftObjec
     return deviceFrame(hand.path ? start : place.point + scene.startHeight * place.outward, place.outward);
 }
 
+/// Returns a place before the surface that is touched. An arm hangs down at first, and a person may have it anywhere:
+/// inside the object, from which the skin would not let it out.
+glm::dvec3 freePlace(const Scene& scene, const SoftObject& object)
+{
+    constexpr double kClear = 5e-3; // [m] at least
+    const HandPlace  place  = handPlace(scene, object);
+    return place.point + std::max(scene.startHeight, kClear) * place.outward;
+}
+
 void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene, const SoftObject& object)
 {
     const DeviceRecord& record = *hand.record;
     if (record.support && !record.support().isBuilt)
         throw Error("--hand " + choice.hand + ": this build of Palpate is " + record.support().library + "; " +
                     record.support().help);
-    hand.hid          = std::make_unique<HidapiSystem>();
-    hand.frame        = frameOf(hand, scene, object);
+    hand.hid   = std::make_unique<HidapiSystem>();
+    hand.frame = frameOf(hand, scene, object);
+    if (hand.isHeldByPerson()) hand.from = freePlace(scene, object);
     hand.frame.scale  = scene.workspaceScale;
     hand.frame.clutch = scene.clutchButton > 0 ? 1U << unsigned(scene.clutchButton - 1) : 0U;
     DeviceRequest request{.hid      = *hand.hid,

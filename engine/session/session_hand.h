@@ -36,6 +36,7 @@ struct SessionHand {
     const DeviceRecord*             record = nullptr; ///< null: the path moves by itself, whatever the force
     std::unique_ptr<HapticDevice>   device;
     DeviceFrame                     frame;
+    std::optional<glm::dvec3>       from;        ///< [m] before the place, of a device that a person holds
     double                          seconds = 5; ///< [s] how long
     std::vector<std::string>        warnings;    ///< what is unusual about it, in sentences
     std::vector<std::string>        notes;       ///< what its user should know, in sentences

@@ -1,4 +1,6 @@
 #pragma once
+#include <optional>
+
 #include "device/haptic_device.h"
 #include "engine/session/deformation.h"
 #include "engine/session/scene.h"
@@ -63,6 +65,8 @@ struct SessionParts {
     HapticDevice&         device; ///< open
     DeviceFrame           frame{};
     const HomogeneousLaw* first = nullptr; ///< Deformation::firstLaw(); null: no force before the first table
+
+    std::optional<glm::dvec3> from{}; ///< [m] where the hand has come from, see ContactHalf
 };
 
 } // namespace palp

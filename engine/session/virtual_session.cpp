@@ -47,7 +47,7 @@ private:
 SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTick& onTick,
                           const std::atomic<bool>* stop)
 {
-    Servo          servo(parts.object, parts.scene, parts.frame.inScene(parts.device.info()), parts.first);
+    Servo          servo(parts.object, parts.scene, parts.frame.inScene(parts.device.info()), parts.first, parts.from);
     SessionSummary summary;
     std::shared_ptr<const PatchUpdate>             underWay;
     LatestPair<std::shared_ptr<const PatchUpdate>> updates; // one thread, but a table may be in use still

@@ -133,11 +133,13 @@ open_once() {
 }
 opens 'a session' ''
 opens 'a session with an emulated device' '' --hand falcon-emulator
+grep -q came_from_m recorded/session.json && complain 'a scripted hand is said to come from elsewhere than it does' || pass
 opens 'a session that is told of markers' 'udp 0100007F:5EED' --markers udp:24301
 if command -v python3 >/dev/null; then # a device that is a script, which presses after three seconds
     python3 "$root/samples/bridge_peer.py" 24302 20 >peer.txt & # longer than a busy machine takes to start
     peer=$! seconds=5
     opens 'a session whose device comes by UDP' 'udp 0100007F:5EEE' --hand bridge:udp:24302
+    grep -q came_from_m recorded/session.json && pass || complain "where a person's hand comes from is not recorded"
     wait $peer
     was_pushed_and_let_go peer.txt && pass || complain "the device that is a script felt nothing, or feels it still: $(cat peer.txt)"
 fi

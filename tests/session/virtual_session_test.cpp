@@ -228,6 +228,44 @@ TEST(Servo, TheFirstButtonHeldDownResetsAFault)
     EXPECT_EQ(servo.governor().fault(), GovernorFault::none);
 }
 
+/// A hand that begins inside a closed body, as that of an arm which hangs down: taken to have come from before its
+/// skin it touches that, has no force until it was lifted off, and then has one. Taken to begin in free space it would
+/// be held inside.
+TEST(VirtualSession, AHandThatBeginsInsideIsNotHeldThere)
+{
+    const Scene scene =
+        parseScene(R"({"cloud": "sample:ellipsoid", "points": 8000, "foundation": "1 MPa/m"})", "s", ".");
+    const SoftObject object = loadObject(scene).object;
+    const HandPlace  place  = handPlace(scene, object);
+    const auto       at     = [&](double height) { return place.point + height * place.outward; };
+    // From the middle up through the skin, a rest above, and down on it again.
+    std::vector<HandPose> way;
+    for (const auto& [time, height] :
+         {std::pair(0.0, -30e-3), {0.5, -30e-3}, {1.5, 20e-3}, {3.0, 20e-3}, {4.0, -2e-3}, {5.0, -2e-3}})
+        way.push_back({time, at(height)});
+    const HandPath path(way, "test");
+    struct Felt {
+        double most = 0, inward = 0, last = 0; ///< [N] before the hand was off, of that towards the middle, at the end
+    };
+    const auto feltFrom = [&](const std::optional<glm::dvec3>& from) {
+        Felt         felt;
+        ScriptedHand device(path);
+        Deformation  deformation(object, scene);
+        runVirtual({scene, object, deformation.solver(), device, {}, deformation.firstLaw(), from}, 5, [&](const TickRecord& s) {
+            const double out = glm::dot(s.force, place.outward);
+            if (s.time < 1.6) felt.most = std::max(felt.most, glm::length(s.force));
+            felt.inward = std::max(felt.inward, -out);
+            felt.last   = out;
+        });
+        return felt;
+    };
+    const Felt trapped = feltFrom({}), free = feltFrom(at(10e-3));
+    EXPECT_GT(trapped.inward, 1) << "or the fixture shows nothing";
+    EXPECT_EQ(free.most, 0);
+    EXPECT_EQ(free.inward, 0);
+    EXPECT_GT(free.last, 0.1);
+}
+
 /// A device that renders little is never asked for more, whatever the scene allows.
 TEST(VirtualSession, TheDevicesLimitsBoundTheForce)
 {

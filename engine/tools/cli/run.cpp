@@ -72,7 +72,7 @@ void replay(const ReplayOptions& o)
     const double         seconds = double(session.records.size()) * 1e-3;
     ReplayDevice         hand(session.records, session.hand);
     const SessionSummary summary =
-        playVirtual({scene, object, deformation.solver(), hand, {}, deformation.firstLaw()}, seconds,
+        playVirtual({scene, object, deformation.solver(), hand, {}, deformation.firstLaw(), session.from}, seconds,
                     [&](const TickRecord& record) { again.records.push_back(record); });
     if (!o.compare) {
         o.json ? void(std::cout << jsonText(jsonOf(summary)))

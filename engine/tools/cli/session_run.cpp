@@ -157,6 +157,7 @@ std::unique_ptr<Recording> recordingOf(const SessionOptions& o, const SessionPar
     info.command  = o.command;
     info.cloud    = fingerprint(parts.object.cloud());
     info.hand     = parts.frame.inScene(parts.device.info());
+    info.from     = parts.from;
     return std::make_unique<Recording>(o.record, info);
 }
 
@@ -265,7 +266,8 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
                              keeping(o.blind ? deformation.solver() : telling(deformation.solver()), run.takeover),
                              *hand.device,
                              hand.frame,
-                             deformation.firstLaw()};
+                             deformation.firstLaw(),
+                             hand.from};
     const auto         recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
     if (!o.blind) say(run.notes);

@@ -165,7 +165,7 @@ WorkbenchHand openHand(const ViewOptions& o, const Stage& stage, const HandWait&
     warn(source.warnings);
     say(source.notes);
     waitForHoming(*source.device, wait.givenUp, wait.tell);
-    return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds};
+    return {source.device.get(), source.frame, source.isHeldByPerson() ? 1e9 : source.seconds, source.from};
 }
 
 /// Returns what the options decide.

@@ -21,6 +21,7 @@ void TouchSession::setStage(Stage& stage)
 {
     stage_ = &stage;
     pointer_.emplace(stage, notices_);
+    heldAt_.reset();
     forgetSolver();
     resume();
 }
@@ -39,11 +40,13 @@ void TouchSession::run(const ReadyHand& readyHand, const OnView& onView)
         history_.clear();
         pointer_->begin();
         if (replay_)
-            runWith({replay_.get(), {}, replaySeconds_}, onView);
+            runWith({replay_.get(), {}, replaySeconds_, replayFrom_}, onView);
         else if (!settings_.hand)
             runWith({&pointer_->hand().device(), pointer_->hand().frame(), kUntilEnded}, onView);
-        else if (const auto hand = readyHand())
+        else if (auto hand = readyHand()) {
+            if (hand->from && heldAt_) hand->from = heldAt_; // a hand that presses goes on where it is
             runWith(*hand, onView);
+        }
     } catch (const Error&) {
         closeTap();
         recorder_.end();
@@ -59,9 +62,11 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     recorder_.begin([this] {
         SessionInfo info = settings_.recorded(*stage_, *hand_.device);
         info.hand        = hand_.frame.inScene(info.hand);
+        info.from        = hand_.from;
         return info;
     });
-    const SessionParts parts{stage_->scene(), stage_->object(), solver(), *hand.device, hand.frame, stage_->firstLaw()};
+    const SessionParts  parts{stage_->scene(), stage_->object(),   solver(), *hand.device,
+                             hand.frame,      stage_->firstLaw(), hand.from};
     RealSessionSettings real;
     real.seconds    = hand.seconds;
     real.viewPeriod = 1e-4; // the next picture begins as soon as one is done
@@ -73,12 +78,15 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
         tap_.emplace(recorder_.recording(), settings_.streams);
     }
     real.onStart = [this](std::chrono::steady_clock::time_point start) { tap_->begin(start); };
-    real.onTick  = [this](const TickRecord& record) {
-        static_cast<void>(ring_.push(record)); // curves may have gaps
+    std::optional<glm::dvec3> tool; // [m] in the last tick
+    real.onTick = [this, &tool, clear = stage_->object().spacing()](const TickRecord& record) {
+        tool = record.proxy + clear * record.normal; // off the surface, so that its side is known
+        static_cast<void>(ring_.push(record));       // curves may have gaps
         tap_->push(record);
     };
     const SessionSummary summary = runReal(parts, real, realTime_);
     closeTap();
+    if (!byPointer() && !replay_ && tool) heldAt_ = tool;
     conclude(summary);
 }
 
@@ -127,6 +135,7 @@ void TouchSession::startReplay(const RecordedSession& session)
 {
     replay_        = std::make_unique<ReplayDevice>(session.records, session.hand);
     replaySeconds_ = double(session.records.size()) * 1e-3;
+    replayFrom_    = session.from;
 }
 
 void TouchSession::toggleRecording()

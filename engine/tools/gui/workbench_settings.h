@@ -24,6 +24,8 @@ struct WorkbenchHand {
     HapticDevice* device = nullptr; ///< open
     DeviceFrame   frame;
     double        seconds = 5; ///< how long it goes [s]
+
+    std::optional<glm::dvec3> from{}; ///< [m] SessionParts::from of the first session with it
 };
 
 /// What the thread that makes a hand ready may use.
@@ -77,11 +79,11 @@ struct WorkbenchSettings {
 /// The statistics of a window's run.
 struct WorkbenchReport {
     std::uint64_t       frames = 0, touchingFrames = 0;
-    std::vector<double> frameTimes; ///< time from frame to frame, while something was touched [s]
-    std::string         said;       ///< a last message for the user; may be empty
+    std::vector<double> frameTimes;      ///< time from frame to frame, while something was touched [s]
+    std::string         said;            ///< a last message for the user; may be empty
     bool                hasLost = false; ///< paint or ticks that it should have kept; it has complained of that
-    std::vector<double> drawTimes;  ///< of the same frames: making the picture [s]
-    std::string         realTime;   ///< real-time rights that the system refused; empty if none
+    std::vector<double> drawTimes;       ///< of the same frames: making the picture [s]
+    std::string         realTime;        ///< real-time rights that the system refused; empty if none
 };
 
 } // namespace palp

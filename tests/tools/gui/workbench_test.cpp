@@ -81,7 +81,7 @@ public:
         state.time     = now;
         state.sequence = ++sequence_;
         // From above into the object within a tenth of a second: which side it is on is known from where it comes.
-        state.position = {0, 10e-3 - 11.5e-3 * std::min(1.0, now / 0.1), 0};
+        state.position = {0, 10e-3 - 11.5e-3 * (stays ? 1.0 : std::min(1.0, now / 0.1)), 0};
         state.velocity = {0, 0, hurries ? 2.0 : 0.0};
         state.homed = state.inBox = true;
         state.fault               = DeviceFault::none;
@@ -90,6 +90,7 @@ public:
     std::atomic<double> last = 0, most = 0,
                         first = 0;     ///< of the newest tick, of all, of the first of any session [N]
     std::atomic<bool> hurries = false; ///< faster than the governor lets a hand be
+    std::atomic<bool> stays   = false; ///< inside, also as a session begins
 
 private:
     HapticDeviceInfo info_;
@@ -319,6 +320,29 @@ TEST_F(WorkbenchTest, EverySessionBeginsWithoutAForce)
 
     EXPECT_EQ(hand_.first, 0) << "although the hand was inside of the object before";
     EXPECT_GT(hand_.most, 0.05);
+}
+
+/// The side that a session's hand is on is not forgotten by the next: what presses from above goes on doing so.
+TEST_F(WorkbenchTest, ASessionThatBeginsWhileADevicePressesGoesOnFromItsTool)
+{
+    settings_.hand = [this](const Stage& stage, const HandWait&) {
+        const auto [point, outward] = stage.place();
+        return WorkbenchHand{&hand_, deviceFrame(point, outward), 1e9, point + 10e-3 * outward};
+    };
+    record();
+    wait("a force", [this] { return hand_.last > 0.05; });
+    step("it stays", [this](WindowInput&) { hand_.stays = true; });
+    press(kF5Key);
+    rest(0.3);
+    press(kF5Key);
+    rest(0.2);
+    run();
+
+    const RecordedSession session = readSession("session-0001");
+    ASSERT_TRUE(session.from);
+    EXPECT_LT(glm::length(*session.from), 5e-3) << "where the tool was, not 10 mm above";
+    EXPECT_LT(session.records.front().hip.z, -1e-3) << "the hand is inside from the first tick on";
+    for (const TickRecord& record : session.records) ASSERT_GT(record.proxy.z, -0.1e-3) << record.time;
 }
 
 TEST_F(WorkbenchTest, APointersRecordingBeginsWithoutAForceWhileItPresses)
