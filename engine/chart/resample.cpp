@@ -86,24 +86,28 @@ double kernelReach(double pointSpacing, double nodeSpacing) noexcept
 
 std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const ChartPoint> positions,
                                    std::span<const PointValues> values, Resampling resampling, double pointSpacing,
-                                   double sparsest)
+                                   double sparsest, Sampling sampling)
 {
     for (const PointValues& of : values)
         PALP_EXPECT(!positions.empty() && positions.size() == of.size(),
                     std::to_string(positions.size()) + " positions, " + std::to_string(of.size()) + " values");
-    const PlateGrid& grid  = window.grid;
-    const double     cell  = std::max(grid.spacingX, grid.spacingZ);
-    const double     width = resamplingWidth(pointSpacing, cell),
-                 widest    = resamplingWidth(std::max(pointSpacing, sparsest), cell);
+    const PlateGrid& grid     = window.grid;
+    const double     cell     = std::max(grid.spacingX, grid.spacingZ);
+    const double     farthest = std::max(pointSpacing, sparsest), widest = resamplingWidth(farthest, cell);
+    double           width = resamplingWidth(pointSpacing, cell);
+    if (sampling == Sampling::means) width = std::min(width, resamplingWidthOfMeans(farthest, cell));
 
     PALP_EXPECT(areFinite(positions), "a point is not finite");
 
     std::vector<Resampled> results(values.size(), {NodeField(grid, std::numeric_limits<double>::quiet_NaN()), 0});
     if (resampling == Resampling::logMean) {
         fill(window, positions, values, width, results);
-        if (surelyCovered(window, positions, width)) return results;
-        for (double wider = 2 * width; wider < 2 * widest; wider *= 2)
+        const auto isFull = [&nodes = results[0].rigidity.values()] {
+            return std::ranges::none_of(nodes, [](double value) { return std::isnan(value); });
+        };
+        for (double wider = 2 * width; wider < 2 * widest && !isFull(); wider *= 2)
             fill(window, positions, values, std::min(wider, widest), results);
+        if (isFull() && surelyCovered(window, positions, widest)) return results;
     }
     takeNearest(window, positions, values, kResamplingNearby * widest, results);
     return results;
@@ -111,9 +115,9 @@ std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const Ch
 
 Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
                            std::span<const double> rigidities, Resampling resampling, double pointSpacing,
-                           double sparsest)
+                           double sparsest, Sampling sampling)
 {
-    return std::move(resampleAll(window, positions, {&rigidities, 1}, resampling, pointSpacing, sparsest)[0]);
+    return std::move(resampleAll(window, positions, {&rigidities, 1}, resampling, pointSpacing, sparsest, sampling)[0]);
 }
 
 } // namespace palp

@@ -30,6 +30,9 @@ struct PatchWindow {
 /// A quantity of each point, > 0.
 using PointValues = std::span<const double>;
 
+/// What points have their values of: a place, or all around as far as the next point, of which they are the means.
+enum class Sampling { places, means };
+
 struct Resampled {
     NodeField   rigidity;              ///< D [N m] at the nodes
     std::size_t nodesWithoutPoint = 0; ///< nodes that had no point nearby and took the nearest one's value
@@ -58,18 +61,20 @@ struct Resampled {
 ///
 /// \param pointSpacing  mean distance of the cloud's points [m], of the closest ones where they are uneven
 /// \param sparsest      mean distance where they are farthest apart [m]; 0: as pointSpacing
+/// \param sampling      means take a narrower Gaussian, see resamplingWidthOfMeans()
 /// \source  Kumari & Chaudhuri 2016, section 2.4 (nearest)
 /// \differs log-mean: arithmetic means are 5 to 17 % off in compliance at a step of contrast 100, and the nearest point
 ///          makes compliance jitter by 0.5 to 2 % while the grid slides
 [[nodiscard]] Resampled resampleRigidity(const PatchWindow& window, std::span<const ChartPoint> positions,
                                          std::span<const double> rigidities, Resampling resampling, double pointSpacing,
-                                         double sparsest = 0);
+                                         double sparsest = 0, Sampling sampling = Sampling::places);
 
 /// Computes several quantities of the same points at the nodes, each as resampleRigidity() would alone and to its bits,
 /// in less time than one after the other.
 /// \return  in their order; nodesWithoutPoint is the same in all
 [[nodiscard]] std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const ChartPoint> positions,
                                                  std::span<const PointValues> values, Resampling resampling,
-                                                 double pointSpacing, double sparsest = 0);
+                                                 double pointSpacing, double sparsest = 0,
+                                                 Sampling sampling = Sampling::places);
 
 } // namespace palp

@@ -1,5 +1,6 @@
 #pragma once
 #include <algorithm>
+#include <cmath>
 
 #include "engine/core/enum_names.h"
 
@@ -23,6 +24,17 @@ inline constexpr double kResamplingNearby = 2.5; ///< beyond it a node counts as
 [[nodiscard]] inline double resamplingWidth(double pointSpacing, double nodeSpacing) noexcept
 {
     return std::max(pointSpacing, nodeSpacing / 2);
+}
+
+/// Returns the same for points that are means of many, each over a square whose side is their distance. Such a mean
+/// smooths as well, with a variance of a twelfth of the square's side squared along either axis; so the Gaussian is
+/// narrower, and both together smooth as it does alone where all points are taken. Means lie evenly, so that less than
+/// half of their distance leaves no gap.
+[[nodiscard]] inline double resamplingWidthOfMeans(double pointSpacing, double nodeSpacing) noexcept
+{
+    constexpr double kLeast   = 0.45; // [spacings of the points]
+    const double     variance = nodeSpacing * nodeSpacing / 4 - pointSpacing * pointSpacing / 12; // [m^2]
+    return std::max(kLeast * pointSpacing, std::sqrt(std::max(variance, 0.0)));
 }
 
 } // namespace palp

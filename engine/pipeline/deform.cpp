@@ -505,7 +505,8 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
         add(object.held(), [](double share) { return std::exp(share); }); // of which the log-mean
     if (!object.stiffening().empty()) add(object.stiffening(), growthOf);
 
-    std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest);
+    std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest,
+                                                   patch.coarse ? Sampling::means : Sampling::places);
     patch.nodesWithoutPoint          = resampled[0].nodesWithoutPoint;
     patch.plate = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                    std::move(resampled[0].rigidity)};
@@ -641,10 +642,15 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
 }
 
 constexpr double kCubes[] = {1, 4}; ///< along a cell, of which one point each is taken, the first that will do [1]
-constexpr double kDense   = 0.3;    ///< spacing over the side of the cubes below which one point per cube will do [1]
+constexpr double kDense   = 0.4;    ///< spacing over the side of the cubes below which one point per cube will do [1]
 
-/// Returns whether the surface hardly turns within a few cubes of a place, so that their mean points show what it is.
-bool isSmoothAbout(const SoftObject& object, std::uint32_t nearest, const glm::dvec3& place, double side)
+/// What the surface is like within a few cubes of a place.
+struct Surroundings {
+    double spacing  = 0;     ///< on average [m]
+    bool   isSmooth = false; ///< it hardly turns, so that the cubes' mean points show what it is
+};
+
+Surroundings surroundingsOf(const SoftObject& object, std::uint32_t nearest, const glm::dvec3& place, double side)
 {
     constexpr double           kReach = 3, kAlike = 0.77, kFew = 0.02; // [cubes], cosine of 40 degrees, share [1]
     constexpr std::size_t      kLooked = 500;                          // points
@@ -652,10 +658,12 @@ bool isSmoothAbout(const SoftObject& object, std::uint32_t nearest, const glm::d
     std::vector<std::uint32_t> near;
     object.index().gather(place, kReach * side, near);
     const std::size_t step   = near.size() / kLooked + 1;
-    double            turned = 0, all = 0;
-    for (std::size_t k = 0; k < near.size(); k += step, ++all)
+    double            turned = 0, spacings = 0, all = 0;
+    for (std::size_t k = 0; k < near.size(); k += step, ++all) {
         turned += std::abs(glm::dot(survey.normal(near[k]), survey.normal(nearest))) < kAlike;
-    return turned <= kFew * all;
+        spacings += survey.spacing(near[k]);
+    }
+    return {spacings / all, turned <= kFew * all};
 }
 
 /// Returns the object of a point or so per cell where the points are much denser than that, or a finer one beside a
@@ -664,14 +672,18 @@ std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Co
                                               const PatchSettings& settings)
 {
     constexpr double kQuiet = 0.1; // noise over the side of the cubes [1]
+    constexpr double kNearly =
+        1.5; // a single point's spacing scatters: the mean decides, or touches side by side differ
     if (settings.neighbourhood == Neighbourhood::ball || object.survey().spacings().empty()) return {};
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
     for (const double cubes : kCubes) {
         const double side  = cellOf(settings) / cubes;
-        const bool   dense = object.survey().spacing(nearest) < kDense * side;
+        const bool   dense = object.survey().spacing(nearest) < kNearly * kDense * side;
         const bool   quiet = object.survey().noise(nearest) < kQuiet * side;
         if (!dense || !quiet) return {};
-        if (isSmoothAbout(object, nearest, contact.point, side)) return object.coarse(side);
+        const Surroundings about = surroundingsOf(object, nearest, contact.point, side);
+        if (!(about.spacing < kDense * side)) return {};
+        if (about.isSmooth) return object.coarse(side);
     }
     return {};
 }
@@ -765,7 +777,7 @@ std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& 
     Shell shell = shellOf(patch);
     // Of an object that ends in the window every node has a sheet or none: nothing is blurred into its border.
     if (settings.resampling == Resampling::logMean && patch.covered.values().empty())
-        blurAsIfCoarser(shell, patch.spacing);
+        blurAsIfCoarser(shell, patch.coarse ? 0 : patch.spacing); // of means as of all points
     shell = everySecondOf(shell);
     if (whyUnsolvable(shell.bending)) return {};
     const PlateGrid& grid = shell.bending.grid;

@@ -283,6 +283,49 @@ TEST(Resample, PointsMatterAsFarAsTheKernelReaches)
     EXPECT_NEAR(edge(1.01 * reach), 1, 1e-12) << "rounding";
 }
 
+/// Means over cells, on a grid of cells a little larger than the nodes', smooth a step as their points do: the log-mean
+/// of those with its own Gaussian, of which each mean has done a part. Of a cosine of six nodes, which the Gaussian alone
+/// would leave exp(-2 (pi s / 6 h)^2) of.
+TEST(Resample, MeansSmoothAsThePointsThatTheyStandFor)
+{
+    constexpr int     kCells = 48, kInEach = 12;
+    const PatchWindow window = PatchWindow::square(1, kCells);
+    const double      h      = window.grid.spacingX;
+    const auto law = [&](const ChartPoint& p) { return std::exp(std::cos(2 * std::numbers::pi * p.x / (6 * h))); };
+    for (const double spacing : {0.7, 0.85, 1.0}) { // [h] of the means
+        const int  many  = int(std::ceil(1.4 / (spacing * h)));
+        const auto place = [&](int k, int parts) { return (k + 0.37) * spacing * h / parts - 0.7; };
+        Scatter    all{{}, {}, spacing * h / kInEach}, means{{}, {}, spacing * h};
+        for (int i = 0; i < many; ++i)
+            for (int j = 0; j < many; ++j) {
+                double sum = 0;
+                for (int k = 0; k < kInEach; ++k) sum += std::log(law({place(kInEach * i + k, kInEach), 0})) / kInEach;
+                const double middle = (kInEach - 1) / 2.0;
+                means.positions.push_back({place(kInEach * i, kInEach) + middle * all.spacing, place(j, 1)});
+                means.rigidities.push_back(std::exp(sum));
+                for (int k = 0; k < kInEach; ++k)
+                    for (int l = 0; l < 3; ++l) {
+                        all.positions.push_back({place(kInEach * i + k, kInEach), place(3 * j + l, 3)});
+                        all.rigidities.push_back(law(all.positions.back()));
+                    }
+            }
+        const auto of = [&](const Scatter& s, Sampling sampling) {
+            return resampleRigidity(window, s.positions, s.rigidities, Resampling::logMean, s.spacing, 0, sampling);
+        };
+        const Resampled whole = of(all, Sampling::places), right = of(means, Sampling::means),
+                        wide = of(means, Sampling::places);
+        double off = 0, offWide = 0; // [1] of the logarithm
+        for (int i = 8; i < kCells - 8; ++i) {
+            const double truth = std::log(whole.rigidity(i, 24));
+            off                = std::max(off, std::abs(std::log(right.rigidity(i, 24)) - truth));
+            offWide            = std::max(offWide, std::abs(std::log(wide.rigidity(i, 24)) - truth));
+        }
+        EXPECT_LT(off, 0.03) << spacing;
+        EXPECT_GT(offWide, 3 * off) << spacing;
+        EXPECT_EQ(right.nodesWithoutPoint, 0u);
+    }
+}
+
 TEST(Resample, HolesAndBordersAreCountedAndFilledFromTheNearestPoint)
 {
     const PatchWindow window = PatchWindow::square(1, 20);

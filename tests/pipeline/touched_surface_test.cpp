@@ -372,6 +372,28 @@ TEST(DenseCloud, FeelsAsTheSparseOneAndMovesSmoothly)
     }
 }
 
+/// Cubes' means are smoothed as the points themselves would be, so that a touch by cubes and one by points, as a place
+/// with a few more points beside has, feel the same sharp disc.
+TEST(DenseCloud, FeelsASharpDiscAsAllOfItsPointsDo)
+{
+    const auto disc = [](const glm::dvec3& p) { return std::hypot(p.x, p.y) < 4e-3 ? 100 * kSoft : kSoft; };
+    Cloud      cloud;
+    cloud.add(sheet(60'000, 0, 5), disc); // 0.26 of a cell apart
+    const SoftObject    body     = cloud.object();
+    const PatchSettings byPoints = [] {
+        PatchSettings settings = kTouch;
+        settings.neighbourhood = Neighbourhood::ball;
+        return settings;
+    }();
+    for (const double x : {0.0, 1e-3, 2.5e-3, 4e-3, 5e-3, 6.5e-3}) {
+        const Contact contact{{x, 0.3e-3, 0}, {0, 0, 1}};
+        const Patch   cubes = deform(body, contact, kTouch), points = deform(body, contact, byPoints);
+        ASSERT_TRUE(cubes.coarse);
+        ASSERT_FALSE(points.coarse);
+        EXPECT_NEAR(cubes.feltStiffness / points.feltStiffness, 1, 0.015) << x;
+    }
+}
+
 /// A flood costs ten times as much. The ball reaches far down the sides, and its points come in any order.
 TEST(TouchedSurface, ABallOfACurvedSurfaceIsTakenWhole)
 {
