@@ -51,7 +51,7 @@ Extent extentOf(std::span<const glm::dvec3> positions, int axis)
     const auto skipped = std::ptrdiff_t(kOutermost * double(values.size()));
     const auto low = values.begin() + skipped, high = values.end() - 1 - skipped;
     std::nth_element(values.begin(), low, values.end());
-    std::nth_element(low, high, values.end());
+    if (high > low) std::nth_element(low + 1, high, values.end());
     return {*low, *high};
 }
 

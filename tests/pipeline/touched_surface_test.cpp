@@ -155,7 +155,7 @@ TEST(TouchedSurface, TheFlatFaceOfABoxIsFlat)
     EXPECT_LT(glm::length(patch.chart.origin - glm::dvec3(0, 0, 10e-3)), 0.02 * kTouch.window);
     double stretched = 0, inside = 0; // [m^2] of chart over the face
     for (std::size_t n = 0; n < patch.touched; ++n) {
-        const glm::dvec3& p = body.positions()[patch.points[n]];
+        const glm::dvec3& p = (patch.coarse ? patch.coarse->object() : body).positions()[patch.points[n]];
         if (p.z < 9.9e-3 || std::hypot(p.x, p.y) > 10e-3) continue;
         stretched += std::hypot(patch.positions[n].x, patch.positions[n].z);
         inside += std::hypot(p.x, p.y);

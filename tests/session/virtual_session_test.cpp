@@ -229,8 +229,8 @@ TEST(Servo, TheFirstButtonHeldDownResetsAFault)
 }
 
 /// A hand that begins inside a closed body, as that of an arm which hangs down: taken to have come from before its
-/// skin it touches that, has no force until it was lifted off, and then has one. Taken to begin in free space it would
-/// be held inside.
+/// skin it touches that, with hardly a force until it was lifted off, because the tank pays for no depth that the hand has
+/// not pressed, and then with all of it. Taken to begin in free space it would be held inside.
 TEST(VirtualSession, AHandThatBeginsInsideIsNotHeldThere)
 {
     const Scene scene =
@@ -251,19 +251,20 @@ TEST(VirtualSession, AHandThatBeginsInsideIsNotHeldThere)
         Felt         felt;
         ScriptedHand device(path);
         Deformation  deformation(object, scene);
-        runVirtual({scene, object, deformation.solver(), device, {}, deformation.firstLaw(), from}, 5, [&](const TickRecord& s) {
-            const double out = glm::dot(s.force, place.outward);
-            if (s.time < 1.6) felt.most = std::max(felt.most, glm::length(s.force));
-            felt.inward = std::max(felt.inward, -out);
-            felt.last   = out;
-        });
+        runVirtual({scene, object, deformation.solver(), device, {}, deformation.firstLaw(), from}, 5,
+                   [&](const TickRecord& s) {
+                       const double out = glm::dot(s.force, place.outward);
+                       if (s.time < 1.6) felt.most = std::max(felt.most, glm::length(s.force));
+                       felt.inward = std::max(felt.inward, -out);
+                       felt.last   = out;
+                   });
         return felt;
     };
     const Felt trapped = feltFrom({}), free = feltFrom(at(10e-3));
     EXPECT_GT(trapped.inward, 1) << "or the fixture shows nothing";
-    EXPECT_EQ(free.most, 0);
+    EXPECT_LT(free.most, 0.3) << "measured 0.12 N, outward";
     EXPECT_EQ(free.inward, 0);
-    EXPECT_GT(free.last, 0.1);
+    EXPECT_GT(free.last, 0.5);
 }
 
 /// A device that renders little is never asked for more, whatever the scene allows.
