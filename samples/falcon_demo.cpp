@@ -121,8 +121,9 @@ void run(Options& o)
         if (line) showLine(view);
     };
     std::string warning;
-    report(runReal({scene, loaded.object, deformation.solver(), *hand.device, hand.frame, deformation.firstLaw()},
-                   settings, warning));
+    report(runReal(
+        {scene, loaded.object, deformation.solver(), *hand.device, hand.frame, deformation.firstLaw(), hand.from},
+        settings, warning));
     hand.device->close();
     if (!warning.empty()) std::fprintf(stderr, "falcon_demo: warning: %s\n", warning.c_str());
     if (!emulated) return;

@@ -106,7 +106,8 @@ typedef struct palpate_points {
     const void*     normals;           /**< outward, of each point, 0 where unknown; may be NULL */
     int             normal_type;       /**< palpate_number */
     size_t          normal_stride;     /**< bytes; 0: side by side */
-    const uint32_t* faces;             /**< three points each; may be NULL */
+    const uint32_t* faces;             /**< three points each; may be NULL. Closed surfaces that lie inside out are
+                                            turned, and normals that point into one */
     size_t          face_count;        /**< of faces, each with three indices of points */
     const void*     stiffening;        /**< b of each point by which its force stiffens with depth, K (e^(b d) - 1) / b,
                                             0 to 1e5 [1/m]; may be NULL. The scene's key "stiffening" wins over it */

@@ -91,11 +91,11 @@ std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const Ch
     for (const PointValues& of : values)
         PALP_EXPECT(!positions.empty() && positions.size() == of.size(),
                     std::to_string(positions.size()) + " positions, " + std::to_string(of.size()) + " values");
-    const PlateGrid& grid     = window.grid;
-    const double     cell     = std::max(grid.spacingX, grid.spacingZ);
-    const double     farthest = std::max(pointSpacing, sparsest), widest = resamplingWidth(farthest, cell);
-    double           width = resamplingWidth(pointSpacing, cell);
-    if (sampling == Sampling::means) width = std::min(width, resamplingWidthOfMeans(farthest, cell));
+    const PlateGrid& grid = window.grid;
+    const double     cell = std::max(grid.spacingX, grid.spacingZ);
+    const double     width =
+        sampling == Sampling::means ? resamplingWidthOfMeans(pointSpacing, cell) : resamplingWidth(pointSpacing, cell);
+    const double widest = resamplingWidth(std::max(pointSpacing, sparsest), cell);
 
     PALP_EXPECT(areFinite(positions), "a point is not finite");
 

@@ -50,7 +50,7 @@ struct Resampled {
 /// Computes the rigidity at the nodes of a window from scattered values.
 ///
 /// Log-mean: ln D = sum w_i ln D_i / sum w_i,  w = exp(-d^2 / (2 s^2)),  over the points in the square of half
-/// side 4 s about the node,  s = max(pointSpacing, h/2). A node with no point in its square takes the nearest one's
+/// side 4 s about the node,  s = max(pointSpacing, h/2), of means resamplingWidthOfMeans(). A node with no point in its square takes the nearest one's
 /// value. A node counts as without a point if none lies within 2.5 s: in a random cloud one node in 10^8 has none, so a
 /// count above zero means a hole, a border or a far side.
 ///

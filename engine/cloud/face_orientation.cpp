@@ -1,13 +1,20 @@
 #include "engine/cloud/face_orientation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vector_relational.hpp>
+
+#include "engine/cloud/point_cloud.h"
 
 namespace palp {
 namespace {
@@ -70,18 +77,6 @@ private:
     std::vector<Edge>          edges_;
 };
 
-/// Returns whether each edge belongs to two triangles that face the same way.
-bool isClosed(std::span<const Triangle> faces, std::size_t points)
-{
-    std::size_t shared   = 0;
-    bool        allAlike = true;
-    SharedEdges(faces, points).each([&](std::uint32_t, std::uint32_t, bool alike) {
-        ++shared;
-        allAlike = allAlike && alike;
-    });
-    return allAlike && 2 * shared == 3 * faces.size();
-}
-
 double areaOf(const Triangle& face, std::span<const glm::dvec3> positions)
 {
     const glm::dvec3& corner = positions[face[0]];
@@ -140,22 +135,129 @@ std::size_t turnToNeighbours(std::span<Triangle> faces, std::span<const glm::dve
     return count;
 }
 
-bool turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3> positions)
+namespace {
+
+/// Triangles that hang together over edges of two.
+struct Piece {
+    std::vector<std::uint32_t> faces;
+    std::size_t                shared = 0;    ///< edges
+    bool                       alike  = true; ///< all face as their neighbours do
+    double                     volume = 0;    ///< enclosed, below zero if it lies inside out [m^3]; closed pieces'
+    Bounds                     box;           ///< closed pieces'
+
+    [[nodiscard]] bool isClosed() const { return alike && 2 * shared == 3 * faces.size(); }
+};
+
+/// Returns the pieces of a mesh, in the order of their first triangles.
+std::vector<Piece> piecesOf(std::span<const Triangle> faces, std::size_t points)
 {
-    if (faces.empty()) return false;
-    // About a corner of its own, so that a body far from the origin loses no digits.
-    const glm::dvec3& middle = positions[faces[0][0]];
-    double            volume = 0, extent = 0; // six times what is enclosed, and the sum of its parts' sizes [m^3]
-    for (const Triangle& face : faces) {
-        const double part =
-            glm::dot(positions[face[0]] - middle, glm::cross(positions[face[1]] - middle, positions[face[2]] - middle));
-        volume += part;
-        extent += std::abs(part);
+    SharedEdges                edges(faces, points);
+    std::vector<std::uint32_t> root(faces.size());
+    std::iota(root.begin(), root.end(), 0U);
+    const auto rootOf = [&root](std::uint32_t face) {
+        while (root[face] != face) face = root[face] = root[root[face]];
+        return face;
+    };
+    edges.each([&](std::uint32_t one, std::uint32_t other, bool) {
+        const std::uint32_t a = rootOf(one), b = rootOf(other);
+        root[std::max(a, b)] = std::min(a, b);
+    });
+    std::vector<Piece>         pieces;
+    std::vector<std::uint32_t> pieceOf(faces.size());
+    for (std::uint32_t face = 0; face < faces.size(); ++face) {
+        const std::uint32_t first = rootOf(face);
+        if (first == face) {
+            pieceOf[face] = std::uint32_t(pieces.size());
+            pieces.emplace_back();
+        }
+        pieceOf[face] = pieceOf[first];
+        pieces[pieceOf[face]].faces.push_back(face);
     }
-    // What encloses nothing, as a sheet folded back on itself, has the sign of its rounding.
-    if (!(volume < -1e-9 * extent) || !isClosed(faces, positions.size())) return false;
-    for (Triangle& face : faces) std::swap(face[1], face[2]);
-    return true;
+    edges.each([&](std::uint32_t one, std::uint32_t, bool alike) {
+        Piece& piece = pieces[pieceOf[one]];
+        ++piece.shared;
+        piece.alike = piece.alike && alike;
+    });
+    return pieces;
+}
+
+void measure(Piece& piece, std::span<const Triangle> faces, std::span<const glm::dvec3> positions)
+{
+    // About a corner of its own, so that a body far from the origin loses no digits.
+    const glm::dvec3 middle = positions[faces[piece.faces[0]][0]];
+    double           extent = 0; // [m^3] the sum of the parts' sizes
+    piece.box               = {middle, middle};
+    for (const std::uint32_t face : piece.faces) {
+        const auto& [a, b, c] = faces[face];
+        const double part =
+            glm::dot(positions[a] - middle, glm::cross(positions[b] - middle, positions[c] - middle)) / 6;
+        piece.volume += part;
+        extent += std::abs(part);
+        for (const std::uint32_t corner : {a, b, c}) {
+            piece.box.low  = glm::min(piece.box.low, positions[corner]);
+            piece.box.high = glm::max(piece.box.high, positions[corner]);
+        }
+    }
+    if (std::abs(piece.volume) < 1e-9 * extent) piece.volume = 0; // a sheet folded back on itself encloses nothing
+}
+
+bool liesWithin(const Bounds& inner, const Bounds& outer)
+{
+    return glm::all(glm::greaterThan(inner.low, outer.low)) && glm::all(glm::lessThan(inner.high, outer.high));
+}
+
+/// Turns the normals of a piece's corners if they point inward for the larger part of its area; returns how many.
+std::size_t turnNormals(const Piece& piece, std::span<const Triangle> faces, std::span<const glm::dvec3> positions,
+                        std::span<glm::vec3> normals)
+{
+    std::vector<std::uint32_t> corners;
+    double                     outward = 0; // over triangles and their corners, of twice the area [m^2]
+    for (const std::uint32_t face : piece.faces) {
+        const auto& [a, b, c] = faces[face];
+        const glm::dvec3 area = glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
+        for (const std::uint32_t corner : {a, b, c}) {
+            outward += glm::dot(area, glm::dvec3(normals[corner]));
+            corners.push_back(corner);
+        }
+    }
+    if (outward >= 0) return 0;
+    std::ranges::sort(corners);
+    const auto rest = std::ranges::unique(corners);
+    corners.erase(rest.begin(), rest.end());
+    for (const std::uint32_t corner : corners) normals[corner] = -normals[corner];
+    return corners.size();
+}
+
+} // namespace
+
+TurnedOutward turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3> positions,
+                          std::span<glm::vec3> normals)
+{
+    constexpr std::size_t kMostBodies = 100; // that are asked whether they hold another
+
+    std::vector<Piece> pieces = piecesOf(faces, positions.size());
+    std::erase_if(pieces, [](const Piece& piece) { return !piece.isClosed(); });
+    for (Piece& piece : pieces) measure(piece, faces, positions);
+    std::ranges::stable_sort(pieces, std::greater(), [](const Piece& piece) { return piece.box.diagonal(); });
+    std::vector<const Piece*> bodies;
+    std::vector<bool>         turns(pieces.size()); // a body for itself, a wall as its body does
+    std::vector<std::size_t>  bodyAt;
+    TurnedOutward             turned;
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+        const auto body =
+            std::ranges::find_if(bodies, [&](const Piece* other) { return liesWithin(pieces[k].box, other->box); });
+        turns[k] = body != bodies.end() ? turns[bodyAt[std::size_t(body - bodies.begin())]] : pieces[k].volume < 0;
+        if (body == bodies.end() && bodies.size() < kMostBodies) {
+            bodies.push_back(&pieces[k]);
+            bodyAt.push_back(k);
+        }
+        if (turns[k]) {
+            for (const std::uint32_t face : pieces[k].faces) std::swap(faces[face][1], faces[face][2]);
+            turned.faces += pieces[k].faces.size();
+        }
+        if (!normals.empty()) turned.normals += turnNormals(pieces[k], faces, positions, normals);
+    }
+    return turned;
 }
 
 } // namespace palp

@@ -19,15 +19,24 @@ namespace palp {
 /// \return the number of triangles that were turned
 std::size_t turnToNeighbours(std::span<Triangle> faces, std::span<const glm::dvec3> positions);
 
-/// Turns a closed surface that lies inside out, so that its triangles face away from what it encloses.
+/// What turnOutward() has turned.
+struct TurnedOutward {
+    std::size_t faces = 0, normals = 0;
+};
+
+/// Turns closed surfaces that lie inside out, so that their triangles face away from what they enclose, and normals of
+/// their points to the same side.
 ///
-/// Closed is a surface each of whose edges belongs to two triangles; it lies inside out if the volume that it encloses,
-/// counted with the sign that its triangles give it, is negative. A body with cavities is one surface here: their walls
-/// face into them before and after. An open surface, whose sides are nobody's to tell, and one whose triangles do not
-/// face as their neighbours do keep all of their bits.
-/// \param faces      of differing corners; turned, all or none, by exchanging the last two
+/// Closed is a surface of triangles that hang together over edges, if two of them, which face the same way, meet at
+/// each; it lies inside out if the volume that it encloses, counted with the sign that its triangles give it, is
+/// negative. One whose box lies within that of a larger closed one is taken for the wall of its cavity and turned with
+/// it, or not, as it is; of the hundred largest ones, so that the time is linear. Open surfaces, whose sides are
+/// nobody's to tell, keep all of their bits.
+/// \param faces      of differing corners; turned by exchanging the last two
 /// \param positions  of the corners [m]
-/// \return whether they were turned
-bool turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3> positions);
+/// \param normals    of the corners, 0 where none is known, or none; those of a closed surface are turned if they point
+///                   inward for the larger part of its area
+TurnedOutward turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3> positions,
+                          std::span<glm::vec3> normals = {});
 
 } // namespace palp

@@ -363,8 +363,8 @@ void ForceGovernor::watchSpeed(const GovernorInput& in) noexcept
 void ForceGovernor::engage(const GovernorInput& in, double rise, GovernorOutput& out) noexcept
 {
     const bool calm = fault_ == GovernorFault::none && in.homed && in.inBox && !in.letGo && !in.clutched &&
-                      usableAge(in) <= settings_.staleAfter && glm::length(in.velocity) <= settings_.maximumSpeed &&
-                      glm::length(slewed_) < settings_.calmForce;
+                      !in.behind && usableAge(in) <= settings_.staleAfter &&
+                      glm::length(in.velocity) <= settings_.maximumSpeed && glm::length(slewed_) < settings_.calmForce;
     switch (engagement_) {
     case Engagement::waiting:
         mark(out, GovernorAction::waiting);

@@ -116,6 +116,7 @@ struct GovernorInput {
     bool       inBox    = false;    ///< the grip is where the device's kinematics are good, and they could be solved
     bool       letGo    = false;    ///< no force is wanted, of no kind: the program is about to stop
     bool       clutched = false;    ///< the place is not the grip's for now: no force but what carries the arm
+    bool       behind   = false;    ///< the hand has not been in free space yet: no force comes on
     double     dt       = 0;        ///< [s] since the last tick
     int        missedExchanges = 0; ///< with the device, in a row
 
@@ -154,7 +155,7 @@ struct GovernorOutput {
 ///   5  at most 6 N
 ///   6  at most 1 N/ms
 ///   7  at most 1.2 m/s                                 else fault, to zero in 20 ms; in free space engage anew
-///   8  engaged: below 0.2 N for 10 ticks in the box, then from nothing to all in 1.5 s
+///   8  engaged: below 0.2 N for 10 ticks in the box, once in free space, then from nothing to all in 1.5 s
 ///   9  the arm's weight is carried: from nothing to all in 1.5 s once 1, 2, 3 and 7 have been passed for 10 ticks
 ///      in a row, else to nothing in 20 ms
 ///

@@ -642,7 +642,21 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
 }
 
 constexpr double kCubes[] = {1, 4}; ///< along a cell, of which one point each is taken, the first that will do [1]
-constexpr double kDense   = 0.4;    ///< spacing over the side of the cubes below which one point per cube will do [1]
+
+/// Cubes of which one point each may stand for all.
+struct Cubes {
+    double side     = 0; ///< [m] a power of two, as the sides of cubes are
+    double sparsest = 0; ///< [m] spacing of the points below which they will do
+};
+
+/// Returns the cubes for cells of this width: the largest that are hardly wider, whose means are smoothed as the points
+/// would be; and wider ones for points that are dense for the cell but not for those.
+std::array<Cubes, 2> cubesFor(double cell)
+{
+    constexpr double kWidest = 1.1, kWider = 1.42; // [cells]
+    const double     side = std::exp2(std::floor(std::log2(kWidest * cell)));
+    return {{{side, 0.4 * side}, {2 * side, 2 * side < kWider * cell ? 0.3 * cell : 0}}};
+}
 
 /// What the surface is like within a few cubes of a place.
 struct Surroundings {
@@ -675,16 +689,14 @@ std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Co
     constexpr double kNearly =
         1.5; // a single point's spacing scatters: the mean decides, or touches side by side differ
     if (settings.neighbourhood == Neighbourhood::ball || object.survey().spacings().empty()) return {};
-    const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
-    for (const double cubes : kCubes) {
-        const double side  = cellOf(settings) / cubes;
-        const bool   dense = object.survey().spacing(nearest) < kNearly * kDense * side;
-        const bool   quiet = object.survey().noise(nearest) < kQuiet * side;
-        if (!dense || !quiet) return {};
-        const Surroundings about = surroundingsOf(object, nearest, contact.point, side);
-        if (!(about.spacing < kDense * side)) return {};
-        if (about.isSmooth) return object.coarse(side);
-    }
+    const std::uint32_t  nearest = object.index().nearest(contact.point, 1).front().point;
+    const SurfaceSurvey& survey  = object.survey();
+    for (const double cubes : kCubes)
+        for (const auto& [side, sparsest] : cubesFor(cellOf(settings) / cubes)) {
+            if (survey.spacing(nearest) >= kNearly * sparsest || survey.noise(nearest) >= kQuiet * side) continue;
+            const Surroundings about = surroundingsOf(object, nearest, contact.point, side);
+            if (about.spacing < sparsest && about.isSmooth) return object.coarse(side);
+        }
     return {};
 }
 
@@ -716,8 +728,11 @@ void prepareTouch(const SoftObject& object, const PatchSettings& given)
     const PatchSettings settings = settledFor(object, given);
     if (settings.neighbourhood == Neighbourhood::ball) return;
     for (const double cubes : kCubes)
-        if (const double side = cellOf(settings) / cubes; object.spacing() < kDense * side)
-            static_cast<void>(object.coarse(side));
+        for (const auto& [side, sparsest] : cubesFor(cellOf(settings) / cubes))
+            if (object.spacing() < sparsest) {
+                static_cast<void>(object.coarse(side));
+                break;
+            }
 }
 
 Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& given, PlateSolver& solver,

@@ -195,11 +195,11 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
             " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "
             "the nearest point");
-    if (settings.footprintRadius < 2 * patch.spacing && patch.coarse)
+    if (patch.coarse && settings.footprintRadius < 2 * patch.plate.grid.spacingX)
         result.push_back("the cells are " + formatQuantity(patch.plate.grid.spacingX, "m") +
                          " wide and the footprint's radius is " + formatQuantity(settings.footprintRadius, "m") +
                          ": finer detail of the rigidity is averaged out; take more cells");
-    else if (settings.footprintRadius < 2 * patch.spacing)
+    else if (!patch.coarse && settings.footprintRadius < 2 * patch.spacing)
         result.push_back("the points are " + formatQuantity(patch.spacing, "m") +
                          " apart and the footprint's radius is " + formatQuantity(settings.footprintRadius, "m") +
                          ": rigidity between the points is interpolated, finer detail is not in the data");

@@ -104,17 +104,6 @@ void refuseTooLarge(const Scene& scene, const ScatterPlan& plan)
     if (const std::string why = scatterRefusal(plan); !why.empty()) throw Error(cloudName(scene) + ": " + why);
 }
 
-/// Returns whether the file's normals point to the other side of its triangles, for the larger part of the area.
-bool normalsOpposeFaces(const LoadedCloud& loaded)
-{
-    const std::span<const glm::dvec3> at  = loaded.cloud.positions();
-    double                            sum = 0; // over triangles, of twice their area [m^2]
-    for (const auto& [a, b, c] : loaded.faces)
-        sum += glm::dot(glm::cross(at[b] - at[a], at[c] - at[a]),
-                        glm::dvec3(loaded.normals[a] + loaded.normals[b] + loaded.normals[c]));
-    return sum < 0;
-}
-
 /// Turns flipped triangles round: their normals are the points' sides, and what lies behind a seam between two sides is
 /// another sheet to the finger. A closed body that lies inside out is turned whole, or a finger would feel the far face
 /// of its thin parts.
@@ -125,11 +114,13 @@ void turnFlippedFaces(LoadedCloud& loaded)
     if (turned > 0)
         warnings.push_back(std::to_string(turned) + " of " + counted(loaded.faces.size(), "triangle") +
                            " faced against their neighbours and were turned round");
-    if (!turnOutward(loaded.faces, loaded.cloud.positions())) return;
-    warnings.push_back("the closed surface lay inside out: its triangles faced inward and were turned round");
-    if (loaded.normals.empty() || !normalsOpposeFaces(loaded)) return;
-    for (glm::vec3& normal : loaded.normals) normal = -normal;
-    warnings.push_back("the file's normals pointed inward with them and were turned round, too");
+    const TurnedOutward outward = turnOutward(loaded.faces, loaded.cloud.positions(), loaded.normals);
+    if (outward.faces > 0)
+        warnings.push_back(counted(outward.faces, "triangle") +
+                           " of closed surfaces that lay inside out faced inward and were turned round");
+    if (outward.normals > 0)
+        warnings.push_back(std::to_string(outward.normals) +
+                           " of the file's normals pointed into closed surfaces and were turned round");
 }
 
 } // namespace

@@ -41,19 +41,26 @@ GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits)
 ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from)
     : proxy_(object, {scene.proxy, scene.staticFriction, scene.dynamicFriction})
 {
-    if (from) proxy_.step(*from);
+    if (!from) return;
+    proxy_.step(*from);
+    entry_ = Entry::coming;
 }
 
 const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept
 {
     const ProxyState& proxy = proxy_.step(hip + lean);
+    if (entry_ == Entry::coming && proxy.touching)
+        entry_ = Entry::behind;
+    else if (entry_ != Entry::free && !proxy.touching && proxy.position == hip + lean)
+        entry_ = Entry::free;
     motion_.add(time, proxy.position);
     glm::dvec3 velocity = motion_.velocity();
     if (proxy.touching) velocity -= glm::dot(velocity, proxy.normal) * proxy.normal; // of the way down to the surface
     held_ = {{held_.touch.sequence + 1, time, proxy.touching, proxy.position, proxy.normal, velocity},
              proxy.pull + proxy.fade * lean,
              proxy.fade * lean,
-             proxy.limited};
+             proxy.limited,
+             entry_ == Entry::behind};
     return held_;
 }
 
@@ -289,6 +296,7 @@ GovernorInput ForceHalf::governorInput(const TickTime& now, const Hand& hand, co
     in.inBox           = hand.inBox;
     in.letGo           = hand.letGo;
     in.clutched        = hand.clutched;
+    in.behind          = held.behind;
     in.dt              = now.dt;
     in.forceAge        = std::max(0.0, now.time - held.touch.time); // above 0 if the proxy has a thread of its own
     in.missedExchanges = hand.missed;

@@ -106,6 +106,7 @@ struct ProxyContact {
     glm::dvec3 pull{};          ///< [m] from the hand to where the force law acts; see ProxyState
     glm::dvec3 lean{};          ///< [m] part of the pull: what the proxy was given beyond the hand; see LateralLean
     bool       limited = false; ///< the proxy ran out of iterations
+    bool       behind  = false; ///< the hand began behind the surface, and has not been lifted off it yet
 };
 
 /// The first half of a tick: hand -> proxy.
@@ -114,7 +115,8 @@ class ContactHalf {
 public:
     /// \param object  outlives this
     /// \param from    [m] a place in free space from which the hand has come: a hand that begins behind a surface then
-    ///                touches it until it is lifted off, and is not held inside; empty: it begins in free space
+    ///                touches it until it is lifted off, and is not held inside; no force comes on before. Empty: it
+    ///                begins in free space
     ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from = {});
 
     /// Runs one tick of the proxy.
@@ -126,9 +128,16 @@ public:
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
 
 private:
+    enum class Entry {
+        coming, ///< from where the hand has come
+        behind, ///< the surface was in the way
+        free    ///< the hand was in free space
+    };
+
     Proxy        proxy_;
     RecentMotion motion_;
     ProxyContact held_;
+    Entry        entry_ = Entry::free;
 };
 
 /// The time between two answers of a device.

@@ -137,9 +137,9 @@ TEST(FaceOrientation, AClosedBodyThatLiesInsideOutIsTurnedWhole)
     for (glm::dvec3& p : plate.vertices) p = p * glm::dvec3(1, 1, 0.001) + glm::dvec3(500, -300, 200);
     for (const test::Mesh& mesh : {ball(12, 1, {1e3, 0, 0}), plate}) {
         std::vector<Triangle> faces = inverted(mesh.faces);
-        EXPECT_TRUE(turnOutward(faces, mesh.vertices));
+        EXPECT_EQ(turnOutward(faces, mesh.vertices).faces, faces.size());
         EXPECT_EQ(faces, mesh.faces);
-        EXPECT_FALSE(turnOutward(faces, mesh.vertices)) << "it lies right now";
+        EXPECT_EQ(turnOutward(faces, mesh.vertices).faces, 0u) << "it lies right now";
         EXPECT_EQ(faces, mesh.faces);
     }
 }
@@ -153,10 +153,50 @@ TEST(FaceOrientation, TheWallOfACavityIsTurnedWithItsBodyOnly)
     for (const Triangle& face : inner.faces) mesh.faces.push_back({face[0] + shift, face[2] + shift, face[1] + shift});
     mesh.vertices.insert(mesh.vertices.end(), inner.vertices.begin(), inner.vertices.end());
     std::vector<Triangle> faces = mesh.faces;
-    EXPECT_FALSE(turnOutward(faces, mesh.vertices));
+    EXPECT_EQ(turnOutward(faces, mesh.vertices).faces, 0u);
     for (Triangle& face : faces) std::swap(face[1], face[2]);
-    EXPECT_TRUE(turnOutward(faces, mesh.vertices));
+    EXPECT_EQ(turnOutward(faces, mesh.vertices).faces, faces.size());
     EXPECT_EQ(faces, mesh.faces);
+}
+
+/// Each body has a side of its own, whatever others in the file do; an open scrap among them keeps its bits.
+TEST(FaceOrientation, BodiesAreTurnedEachByItself)
+{
+    const test::Mesh large = ball(10, 3, {}), small = ball(6, 1, {10, 0, 0}), scrap = test::square(1);
+    for (const bool largeIsWrong : {true, false}) {
+        test::Mesh            all = large;
+        std::vector<Triangle> wrong;
+        const auto            add = [&](const test::Mesh& mesh, bool turned) {
+            const auto shift = std::uint32_t(wrong.empty() ? 0 : all.vertices.size());
+            if (!wrong.empty()) all.vertices.insert(all.vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
+            for (const auto& [a, b, c] : mesh.faces) {
+                const Triangle right{a + shift, b + shift, c + shift};
+                if (!wrong.empty() && shift > 0) all.faces.push_back(right);
+                wrong.push_back(turned ? Triangle{right[0], right[2], right[1]} : right);
+            }
+        };
+        add(large, largeIsWrong);
+        add(small, !largeIsWrong);
+        add(scrap, false);
+        EXPECT_EQ(turnOutward(wrong, all.vertices).faces, (largeIsWrong ? large : small).faces.size());
+        EXPECT_EQ(wrong, all.faces);
+    }
+}
+
+TEST(FaceOrientation, NormalsThatPointIntoAClosedSurfaceAreTurnedAlsoWhereItsFacesLieRight)
+{
+    const test::Mesh       mesh  = ball(8, 2, {});
+    std::vector<Triangle>  faces = mesh.faces;
+    std::vector<glm::vec3> normals;
+    for (const glm::dvec3& p : mesh.vertices) normals.push_back(-glm::normalize(glm::vec3(p)));
+    normals[3]                 = {}; // unknown
+    const TurnedOutward turned = turnOutward(faces, mesh.vertices, normals);
+    EXPECT_EQ(turned.faces, 0u);
+    EXPECT_EQ(turned.normals, mesh.vertices.size());
+    EXPECT_EQ(faces, mesh.faces);
+    for (std::size_t n = 0; n < normals.size(); ++n)
+        EXPECT_EQ(glm::dot(normals[n], glm::vec3(mesh.vertices[n])) > 0, n != 3);
+    EXPECT_EQ(turnOutward(faces, mesh.vertices, normals).normals, 0u);
 }
 
 /// A dome, a ball that lacks one triangle, and a leaf of two sides that encloses nothing: which side is out, nobody
@@ -168,19 +208,19 @@ TEST(FaceOrientation, WhatIsOpenOrEnclosesNothingKeepsItsBits)
     for (Triangle& face : faces) std::swap(face[1], face[2]);
     faces.pop_back();
     const auto before = faces;
-    EXPECT_FALSE(turnOutward(faces, mesh.vertices));
+    EXPECT_EQ(turnOutward(faces, mesh.vertices).faces, 0u);
     EXPECT_EQ(faces, before);
 
     const std::vector<glm::dvec3> corners{{0.1, 0.2, 0.3}, {1.7, 0.3, 0.1}, {0.2, 1.9, 0.7}};
     std::vector<Triangle>         leaf{{0, 1, 2}, {0, 2, 1}};
-    EXPECT_FALSE(turnOutward(leaf, corners));
+    EXPECT_EQ(turnOutward(leaf, corners).faces, 0u);
 }
 
 TEST(FaceOrientation, NoFacesAreNone)
 {
     std::vector<Triangle> none;
     EXPECT_EQ(turnToNeighbours(none, {}), 0u);
-    EXPECT_FALSE(turnOutward(none, {}));
+    EXPECT_EQ(turnOutward(none, {}).faces, 0u);
 }
 
 } // namespace

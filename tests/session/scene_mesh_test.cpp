@@ -229,7 +229,7 @@ TEST_F(SceneMesh, AClosedMeshThatLiesInsideOutIsTurned)
         std::swap(turned[4], turned[8]);
         swap(face, turned);
     }
-    outward(loadCloud(sceneOf(ply, {{"scatter", "off"}})), "normals pointed inward with them");
+    outward(loadCloud(sceneOf(ply, {{"scatter", "off"}})), "8 of the file's normals pointed into closed surfaces");
 }
 
 /// Where one triangle is flipped, what lies beyond its edge is no other side: a stiff corner there is felt.

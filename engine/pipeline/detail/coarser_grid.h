@@ -11,7 +11,8 @@ namespace palp {
 
 /// Blurs what a shell resists by as much as its map would be if it had been resampled on a grid of twice the spacing:
 /// by the logarithms, with a Gaussian whose variance is what the wider kernel's exceeds the present one's by.
-/// \param pointSpacing  of the points that its rigidity was resampled from [m]
+/// \param pointSpacing  of the points that its rigidity was resampled from [m]; 0 where those were means, which
+///                      were smoothed as if they had been dense
 void blurAsIfCoarser(Shell& shell, double pointSpacing);
 
 } // namespace palp

@@ -221,8 +221,8 @@ void analyseStudies(const std::vector<std::string>& folders, const std::filesyst
                       : "\n");
     if (!leftOut.empty()) std::cout << leftOut << "\n";
     for (const Unfinished& u : all.unfinished)
-        std::cout << u.participant << " has not finished: " << u.answered << " of " << counted(u.planned, "trial")
-                  << "\n";
+        std::cout << shownText(u.participant, kMostOfWord) << " has not finished: " << u.answered << " of "
+                  << counted(u.planned, "trial") << "\n";
     for (const AnswerSummary& s : summaries) printText(s);
 }
 

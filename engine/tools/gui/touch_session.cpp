@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "engine/core/contract.h"
+#include "engine/session/force_state.h"
 #include "engine/tools/gui/touch_faults.h"
 
 namespace palp {
@@ -79,15 +80,19 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     }
     real.onStart = [this](std::chrono::steady_clock::time_point start) { tap_->begin(start); };
     std::optional<glm::dvec3> tool; // [m] in the last tick
-    real.onTick = [this, &tool, clear = stage_->object().spacing()](const TickRecord& record) {
-        tool = record.proxy + clear * record.normal; // off the surface, so that its side is known
-        static_cast<void>(ring_.push(record));       // curves may have gaps
+    bool                      clutched = false;
+    real.onTick = [this, &tool, &clutched, clear = stage_->object().spacing()](const TickRecord& record) {
+        tool     = record.proxy + clear * record.normal; // off the surface, so that its side is known
+        clutched = clutched || forceState(record) == ForceState::clutched;
+        static_cast<void>(ring_.push(record)); // curves may have gaps
         tap_->push(record);
     };
     const SessionSummary summary = runReal(parts, real, realTime_);
     closeTap();
-    if (!byPointer() && !replay_ && tool) heldAt_ = tool;
+    const bool isReplay = replaying();
     conclude(summary);
+    // A hand that was let go may be elsewhere by now; and what a clutch moved the tool by is forgotten.
+    if (!isReplay) heldAt_ = halted() || clutched ? std::nullopt : tool;
 }
 
 void TouchSession::closeTap()

@@ -204,10 +204,10 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
     CloudFigure             figure;
     for (const PressedPatch& p : patches) {
         const glm::dvec3 along = view.exaggeration * p.force * p.patch->forceDirection();
-        for (std::size_t n = 0; n < p.patch->points.size(); ++n) {
-            depth[p.patch->points[n]] += p.force * p.patch->pointResponse[n];
-            positions[p.patch->points[n]] += p.patch->pointResponse[n] * along;
-        }
+        eachMoving(*p.patch, cloud.positions(), [&](std::uint32_t point, const ChartPoint&, double response) {
+            depth[point] += p.force * response;
+            positions[point] += response * along;
+        });
         const int middle = p.patch->window.grid.cellsX / 2;
         figure.marks.push_back(p.patch->contact.point + p.patch->response(middle, middle) * along);
     }

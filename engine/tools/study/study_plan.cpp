@@ -229,13 +229,14 @@ StudyPlan parsePlan(std::string_view text, const std::string& name, const std::f
 std::optional<std::size_t> trialsPlanned(std::string_view canonical)
 {
     try {
-        const Json  plan   = Json::parse(canonical);
-        const auto  rounds = plan.value("repetitions", std::size_t(1));
-        std::size_t trials = 0;
-        for (const Json& task : plan.at("tasks"))
-            trials += rounds * (task.contains("pairs") ? task["pairs"] : plan.at("conditions")).size();
+        const JsonObject plan   = JsonObject::parse(canonical, "a study's plan");
+        const int        rounds = plan.has("repetitions") ? plan.wholeNumber("repetitions", 1, kMostRepetitions) : 1;
+        const auto       conditions = objectsIn(plan, "conditions", "condition", kMostConditions).size();
+        std::size_t      trials     = 0;
+        for (const JsonObject& task : objectsIn(plan, "tasks", "task", kMostTasks))
+            trials += std::size_t(rounds) * (task.has("pairs") ? Json::parse(task.json("pairs")).size() : conditions);
         return trials;
-    } catch (const Json::exception&) {
+    } catch (const Error&) {
         return {};
     }
 }
