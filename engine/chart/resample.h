@@ -50,15 +50,14 @@ struct Resampled {
 /// Computes the rigidity at the nodes of a window from scattered values.
 ///
 /// Log-mean: ln D = sum w_i ln D_i / sum w_i,  w = exp(-d^2 / (2 s^2)),  over the points in the square of half
-/// side 4 s about the node,  s = max(pointSpacing, h/2), of means resamplingWidthOfMeans(). A node with no point in its square takes the nearest one's
-/// value. A node counts as without a point if none lies within 2.5 s: in a random cloud one node in 10^8 has none, so a
-/// count above zero means a hole, a border or a far side.
+/// side 4 s about the node,  s = max(pointSpacing, h/2), of means resamplingWidthOfMeans(). A node with no point in its
+/// square takes the nearest one's value. A node counts as without a point if none lies within 2.5 s: in a random cloud
+/// one node in 10^8 has none, so a count above zero means a hole, a border or a far side. Where the points are unevenly
+/// close, nodes with no point in their square take the log-mean of a square twice as large, and so on up to the square
+/// of the sparsest points; nodes without a point are counted by that last square.
 ///
 /// \param positions     of the points in the chart [m], at least one; may lie outside the window
 /// \param rigidities    D of the same points [N m], > 0
-/// Where the points are unevenly close, nodes with no point in their square take the log-mean of a square twice as
-/// large, and so on up to the square of the sparsest points. Nodes without a point are counted by that last square.
-///
 /// \param pointSpacing  mean distance of the cloud's points [m], of the closest ones where they are uneven
 /// \param sparsest      mean distance where they are farthest apart [m]; 0: as pointSpacing
 /// \param sampling      means take a narrower Gaussian, see resamplingWidthOfMeans()
