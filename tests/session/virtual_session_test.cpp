@@ -228,9 +228,9 @@ TEST(Servo, TheFirstButtonHeldDownResetsAFault)
     EXPECT_EQ(servo.governor().fault(), GovernorFault::none);
 }
 
-/// A hand that begins inside a closed body, as that of an arm which hangs down: taken to have come from before its
-/// skin it touches that, with hardly a force until it was lifted off, because the tank pays for no depth that the hand has
-/// not pressed, and then with all of it. Taken to begin in free space it would be held inside.
+/// A hand that begins inside a closed body, as that of an arm which hangs down: taken to have come from before its skin
+/// it touches that, without a force until it was lifted off however long it rests, during which the tank would pay for
+/// one, and then with all of it. Taken to begin in free space it would be held inside.
 TEST(VirtualSession, AHandThatBeginsInsideIsNotHeldThere)
 {
     const Scene scene =
@@ -238,10 +238,10 @@ TEST(VirtualSession, AHandThatBeginsInsideIsNotHeldThere)
     const SoftObject object = loadObject(scene).object;
     const HandPlace  place  = handPlace(scene, object);
     const auto       at     = [&](double height) { return place.point + height * place.outward; };
-    // From the middle up through the skin, a rest above, and down on it again.
+    // A rest in the middle, up through the skin, a rest above, and down on it again.
     std::vector<HandPose> way;
     for (const auto& [time, height] :
-         {std::pair(0.0, -30e-3), {0.5, -30e-3}, {1.5, 20e-3}, {3.0, 20e-3}, {4.0, -2e-3}, {5.0, -2e-3}})
+         {std::pair(0.0, -30e-3), {20.0, -30e-3}, {21.0, 20e-3}, {22.5, 20e-3}, {23.5, -2e-3}, {24.5, -2e-3}})
         way.push_back({time, at(height)});
     const HandPath path(way, "test");
     struct Felt {
@@ -251,10 +251,10 @@ TEST(VirtualSession, AHandThatBeginsInsideIsNotHeldThere)
         Felt         felt;
         ScriptedHand device(path);
         Deformation  deformation(object, scene);
-        runVirtual({scene, object, deformation.solver(), device, {}, deformation.firstLaw(), from}, 5,
+        runVirtual({scene, object, deformation.solver(), device, {}, deformation.firstLaw(), from}, 24.5,
                    [&](const TickRecord& s) {
                        const double out = glm::dot(s.force, place.outward);
-                       if (s.time < 1.6) felt.most = std::max(felt.most, glm::length(s.force));
+                       if (s.time < 21) felt.most = std::max(felt.most, glm::length(s.force));
                        felt.inward = std::max(felt.inward, -out);
                        felt.last   = out;
                    });
@@ -262,7 +262,7 @@ TEST(VirtualSession, AHandThatBeginsInsideIsNotHeldThere)
     };
     const Felt trapped = feltFrom({}), free = feltFrom(at(10e-3));
     EXPECT_GT(trapped.inward, 1) << "or the fixture shows nothing";
-    EXPECT_LT(free.most, 0.3) << "measured 0.12 N, outward";
+    EXPECT_EQ(free.most, 0);
     EXPECT_EQ(free.inward, 0);
     EXPECT_GT(free.last, 0.5);
 }
