@@ -649,13 +649,13 @@ struct Cubes {
     double sparsest = 0; ///< [m] spacing of the points below which they will do
 };
 
-/// Returns the cubes for cells of this width: the largest that are hardly wider, whose means are smoothed as the points
-/// would be; and wider ones for points that are dense for the cell but not for those.
+/// Returns the cubes for cells of this width: the largest that are no wider, whose means are smoothed as the points would
+/// be; and wider ones for points that are dense for the cell but not for those.
 std::array<Cubes, 2> cubesFor(double cell)
 {
-    constexpr double kWidest = 1.1, kWider = 1.42; // [cells]
-    const double     side = std::exp2(std::floor(std::log2(kWidest * cell)));
-    return {{{side, 0.4 * side}, {2 * side, 2 * side < kWider * cell ? 0.3 * cell : 0}}};
+    constexpr double kWidest = 1.42; // [cells]
+    const double     side    = std::exp2(std::floor(std::log2(cell)));
+    return {{{side, 0.45 * side}, {2 * side, 2 * side < kWidest * cell ? 0.3 * cell : 0}}};
 }
 
 /// What the surface is like within a few cubes of a place.
