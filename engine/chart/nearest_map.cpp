@@ -12,7 +12,8 @@
 // There are two steps. First every point offers itself to the few nodes around it, whole rows of nodes at a time with
 // vector instructions; where points are about as dense as nodes, this settles nearly all nodes without any search
 // structure. Nodes whose best offer might be beaten from outside that neighbourhood, beside holes and beyond the edge
-// of the cloud, then search in buckets of points, outward from the node.
+// of the cloud, then search in buckets of points, outward from the node; far from all points in squares of buckets, of
+// squares, and so on, of which the empty ones are passed at once.
 
 namespace palp {
 namespace {
@@ -146,7 +147,12 @@ struct Bands {
     {
         return int(std::min(std::max((x - low) / width, 0.0), double(count - 1)));
     }
-    /// Returns the square [m^2] of a lower bound for the distance from x, in band `home`, to every point in a band.
+    /// Returns the square [m^2] of a lower bound for the distance from x, in band `home`, to every point in some bands.
+    [[nodiscard]] double gap2(double x, int home, int first, int last) const noexcept
+    {
+        return gap2(x, home, std::clamp(home, first, last));
+    }
+    /// Returns the same of one band.
     [[nodiscard]] double gap2(double x, int home, int band) const noexcept
     {
         if (band == home) return 0;
@@ -167,12 +173,20 @@ public:
             next_[p]             = first;
             first                = std::uint32_t(p);
         }
+        levels_.push_back({x.count, z.count, std::vector<std::uint8_t>(first_.size())});
+        std::ranges::transform(first_, levels_[0].full.begin(), [](std::uint32_t first) { return first != kNone; });
+        while (levels_.back().rows > 1 || levels_.back().columns > 1) levels_.push_back(aboveOf(levels_.back()));
     }
 
     /// Returns the nearest point, given one that may be it.
     [[nodiscard]] std::uint32_t nearest(const ChartPoint& node, std::uint32_t guess) const
     {
-        Search    search{node, guess, squaredDistance(node, guess), x_.of(node.x), z_.of(node.z)};
+        constexpr double kFar = 4; // buckets; nearer ones are looked through sooner than squares are
+        Search           search{node, guess, squaredDistance(node, guess), x_.of(node.x), z_.of(node.z)};
+        if (search.distance2 > kFar * kFar * x_.width * z_.width) {
+            searchSquare(search, levels_.size() - 1, 0, 0);
+            return search.best;
+        }
         const int row = search.row;
         for (int r = row; r < x_.count && scanRow(search, r); ++r) {
         }
@@ -198,6 +212,45 @@ private:
         int           row;       ///< bucket of the node
         int           column;
     };
+
+    /// Squares of 2^k x 2^k buckets, in rows.
+    struct Level {
+        int                       rows = 0, columns = 0;
+        std::vector<std::uint8_t> full; ///< 1: it has a point
+
+        [[nodiscard]] std::size_t at(int row, int column) const noexcept
+        {
+            return std::size_t(row) * std::size_t(columns) + std::size_t(column);
+        }
+    };
+
+    /// Returns the squares of two by two of these.
+    static Level aboveOf(const Level& below)
+    {
+        Level above{(below.rows + 1) / 2, (below.columns + 1) / 2, {}};
+        above.full.resize(std::size_t(above.rows) * std::size_t(above.columns));
+        for (int r = 0; r < below.rows; ++r)
+            for (int c = 0; c < below.columns; ++c) above.full[above.at(r / 2, c / 2)] |= below.full[below.at(r, c)];
+        return above;
+    }
+
+    /// Searches one square of a level, its nearer parts first.
+    void searchSquare(Search& s, std::size_t level, int row, int column) const
+    {
+        const Level& squares = levels_[level];
+        if (!squares.full[squares.at(row, column)]) return;
+        const auto   lastOf = [level](int n, int count) { return std::min(((n + 1) << level) - 1, count - 1); };
+        const double gap2   = x_.gap2(s.node.x, s.row, row << level, lastOf(row, x_.count)) +
+                            z_.gap2(s.node.z, s.column, column << level, lastOf(column, z_.count));
+        if (gap2 > s.distance2) return;
+        if (level == 0) return scanBucket(s, bucket(row, column));
+        const Level& parts = levels_[level - 1];
+        const int    r = 2 * row, c = 2 * column, half = 1 << (level - 1);
+        const int    nearR = s.row >= (r + 1) * half, nearC = s.column >= (c + 1) * half;
+        for (const int dr : {nearR, 1 - nearR})
+            for (const int dc : {nearC, 1 - nearC})
+                if (r + dr < parts.rows && c + dc < parts.columns) searchSquare(s, level - 1, r + dr, c + dc);
+    }
 
     [[nodiscard]] std::size_t bucket(int row, int column) const noexcept
     {
@@ -230,8 +283,9 @@ private:
 
     std::span<const ChartPoint> points_;
     Bands                       x_, z_;
-    std::vector<std::uint32_t>  first_; ///< by bucket
-    std::vector<std::uint32_t>  next_;  ///< by point
+    std::vector<std::uint32_t>  first_;  ///< by bucket
+    std::vector<std::uint32_t>  next_;   ///< by point
+    std::vector<Level>          levels_; ///< buckets, then ever larger squares, up to one
 };
 
 /// An axis of the grid: the extent of its nodes and of the points.
