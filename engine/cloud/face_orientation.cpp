@@ -206,26 +206,19 @@ bool liesWithin(const Bounds& inner, const Bounds& outer)
     return glm::all(glm::greaterThan(inner.low, outer.low)) && glm::all(glm::lessThan(inner.high, outer.high));
 }
 
-/// Turns the normals of a piece's corners if they point inward for the larger part of its area; returns how many.
-std::size_t turnNormals(const Piece& piece, std::span<const Triangle> faces, std::span<const glm::dvec3> positions,
-                        std::span<glm::vec3> normals)
+/// Marks the corners of a piece whose normals point inward for the larger part of its area.
+void markInward(const Piece& piece, std::span<const Triangle> faces, std::span<const glm::dvec3> positions,
+                std::span<const glm::vec3> normals, std::vector<bool>& inward)
 {
-    std::vector<std::uint32_t> corners;
-    double                     outward = 0; // over triangles and their corners, of twice the area [m^2]
+    double outward = 0; // over triangles and their corners, of twice the area [m^2]
     for (const std::uint32_t face : piece.faces) {
         const auto& [a, b, c] = faces[face];
         const glm::dvec3 area = glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
-        for (const std::uint32_t corner : {a, b, c}) {
-            outward += glm::dot(area, glm::dvec3(normals[corner]));
-            corners.push_back(corner);
-        }
+        for (const std::uint32_t corner : {a, b, c}) outward += glm::dot(area, glm::dvec3(normals[corner]));
     }
-    if (outward >= 0) return 0;
-    std::ranges::sort(corners);
-    const auto rest = std::ranges::unique(corners);
-    corners.erase(rest.begin(), rest.end());
-    for (const std::uint32_t corner : corners) normals[corner] = -normals[corner];
-    return corners.size();
+    if (outward >= 0) return;
+    for (const std::uint32_t face : piece.faces)
+        for (const std::uint32_t corner : faces[face]) inward[corner] = true;
 }
 
 } // namespace
@@ -242,6 +235,7 @@ TurnedOutward turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3>
     std::vector<const Piece*> bodies;
     std::vector<bool>         turns(pieces.size()); // a body for itself, a wall as its body does
     std::vector<std::size_t>  bodyAt;
+    std::vector<bool>         inward(normals.size()); // corners
     TurnedOutward             turned;
     for (std::size_t k = 0; k < pieces.size(); ++k) {
         const auto body =
@@ -255,8 +249,13 @@ TurnedOutward turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3>
             for (const std::uint32_t face : pieces[k].faces) std::swap(faces[face][1], faces[face][2]);
             turned.faces += pieces[k].faces.size();
         }
-        if (!normals.empty()) turned.normals += turnNormals(pieces[k], faces, positions, normals);
+        if (!normals.empty()) markInward(pieces[k], faces, positions, normals, inward);
     }
+    for (std::size_t corner = 0; corner < normals.size(); ++corner)
+        if (inward[corner]) {
+            normals[corner] = -normals[corner];
+            ++turned.normals;
+        }
     return turned;
 }
 

@@ -649,13 +649,23 @@ struct Cubes {
     double sparsest = 0; ///< [m] spacing of the points below which they will do
 };
 
-/// Returns the cubes for cells of this width: the largest that are no wider, whose means are smoothed as the points would
-/// be; and wider ones for points that are dense for the cell but not for those.
+/// Returns the cubes for cells of this width: the largest that are no wider, whose means are smoothed as the points
+/// would be; and wider ones for points that are dense for the cell but not for those.
 std::array<Cubes, 2> cubesFor(double cell)
 {
     constexpr double kWidest = 1.42; // [cells]
     const double     side    = std::exp2(std::floor(std::log2(cell)));
     return {{{side, 0.45 * side}, {2 * side, 2 * side < kWidest * cell ? 0.3 * cell : 0}}};
+}
+
+/// Returns the side of the cubes for points of this spacing and noise [m]; 0: they are not dense or quiet enough for
+/// any. Noise must not reach from one cube into the next, or the surface would become two.
+double sideFor(double cell, double spacing, double noise)
+{
+    constexpr double kQuiet = 0.1; // noise over the side of the cubes [1]
+    for (const auto& [side, sparsest] : cubesFor(cell))
+        if (spacing < sparsest && noise < kQuiet * side) return side;
+    return 0;
 }
 
 /// What the surface is like within a few cubes of a place.
@@ -681,22 +691,25 @@ Surroundings surroundingsOf(const SoftObject& object, std::uint32_t nearest, con
 }
 
 /// Returns the object of a point or so per cell where the points are much denser than that, or a finer one beside a
-/// rim; else nothing. Noise must not reach from one cube into the next, or the surface would become two.
+/// rim; else nothing.
 std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Contact& contact,
                                               const PatchSettings& settings)
 {
-    constexpr double kQuiet = 0.1; // noise over the side of the cubes [1]
     constexpr double kNearly =
         1.5; // a single point's spacing scatters: the mean decides, or touches side by side differ
-    if (settings.neighbourhood == Neighbourhood::ball || object.survey().spacings().empty()) return {};
-    const std::uint32_t  nearest = object.index().nearest(contact.point, 1).front().point;
-    const SurfaceSurvey& survey  = object.survey();
-    for (const double cubes : kCubes)
-        for (const auto& [side, sparsest] : cubesFor(cellOf(settings) / cubes)) {
-            if (survey.spacing(nearest) >= kNearly * sparsest || survey.noise(nearest) >= kQuiet * side) continue;
-            const Surroundings about = surroundingsOf(object, nearest, contact.point, side);
-            if (about.spacing < sparsest && about.isSmooth) return object.coarse(side);
-        }
+    const SurfaceSurvey& survey = object.survey();
+    if (settings.neighbourhood == Neighbourhood::ball || survey.spacings().empty()) return {};
+    const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
+    const double        noise   = survey.noise(nearest);
+    for (const double cubes : kCubes) {
+        const double cell = cellOf(settings) / cubes, likely = sideFor(cell, survey.spacing(nearest) / kNearly, noise);
+        if (likely == 0) continue;
+        Surroundings about = surroundingsOf(object, nearest, contact.point, likely);
+        const double side  = sideFor(cell, about.spacing, noise);
+        if (side == 0) continue;
+        if (side != likely) about = surroundingsOf(object, nearest, contact.point, side);
+        if (about.isSmooth) return object.coarse(side);
+    }
     return {};
 }
 
@@ -727,12 +740,15 @@ void prepareTouch(const SoftObject& object, const PatchSettings& given)
 {
     const PatchSettings settings = settledFor(object, given);
     if (settings.neighbourhood == Neighbourhood::ball) return;
+    const SurfaceSurvey& survey = object.survey();
+    if (survey.spacings().empty()) return;
+    constexpr std::size_t kLooked = 500; // points
+    const std::size_t     step    = object.size() / kLooked + 1;
+    double                noise = 0, all = 0; // [m] on average
+    for (std::size_t point = 0; point < object.size(); point += step, ++all) noise += survey.noise(point);
     for (const double cubes : kCubes)
-        for (const auto& [side, sparsest] : cubesFor(cellOf(settings) / cubes))
-            if (object.spacing() < sparsest) {
-                static_cast<void>(object.coarse(side));
-                break;
-            }
+        if (const double side = sideFor(cellOf(settings) / cubes, object.spacing(), noise / all); side > 0)
+            static_cast<void>(object.coarse(side));
 }
 
 Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& given, PlateSolver& solver,

@@ -175,11 +175,12 @@ const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
         shared_.hand.publish();
         shared_.held.take();
         if (const ProxyContact* const newest = shared_.held.held()) return *newest;
+        nothing_.behind      = parts_.from.has_value();
         nothing_.touch.time  = time;
         nothing_.touch.point = hand.position;
         return nothing_;
     }
-    const ProxyContact& contact = contact_.tick(time, hand.position, force_.lean());
+    const ProxyContact& contact = contact_.tick(time, hand.position, force_.lean(), hand.placeIsKnown());
     publish(contact);
     return contact;
 }
@@ -193,7 +194,8 @@ void RealSession::proxyThread()
         metronome.wait();
         if (!shared_.hand.take()) continue;
         const TimedHand&    newest = *shared_.hand.held();
-        const ProxyContact& held   = contact_.tick(newest.time, newest.hand.position, newest.lean);
+        const ProxyContact& held =
+            contact_.tick(newest.time, newest.hand.position, newest.lean, newest.hand.placeIsKnown());
         publish(held);
         shared_.held.draft() = held;
         shared_.held.publish();

@@ -43,16 +43,13 @@ ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std
 {
     if (!from) return;
     proxy_.step(*from);
-    entry_ = Entry::coming;
+    isFree_ = false;
 }
 
-const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept
+const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean, bool isKnown) noexcept
 {
-    const ProxyState& proxy = proxy_.step(hip + lean);
-    if (entry_ == Entry::coming && proxy.touching)
-        entry_ = Entry::behind;
-    else if (entry_ != Entry::free && !proxy.touching && proxy.position == hip + lean)
-        entry_ = Entry::free;
+    const ProxyState& proxy = isFree_ || isKnown ? proxy_.step(hip + lean) : proxy_.state();
+    isFree_                 = isFree_ || (isKnown && !proxy.touching && proxy.position == hip + lean);
     motion_.add(time, proxy.position);
     glm::dvec3 velocity = motion_.velocity();
     if (proxy.touching) velocity -= glm::dot(velocity, proxy.normal) * proxy.normal; // of the way down to the surface
@@ -60,7 +57,7 @@ const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const 
              proxy.pull + proxy.fade * lean,
              proxy.fade * lean,
              proxy.limited,
-             entry_ == Entry::behind};
+             !isFree_};
     return held_;
 }
 

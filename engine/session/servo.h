@@ -69,6 +69,8 @@ struct Hand {
     bool          letGo    = false;        ///< see GovernorInput
     bool          clutched = false;        ///< likewise
 
+    [[nodiscard]] bool placeIsKnown() const noexcept { return homed && inBox; }
+
     /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
@@ -106,7 +108,7 @@ struct ProxyContact {
     glm::dvec3 pull{};          ///< [m] from the hand to where the force law acts; see ProxyState
     glm::dvec3 lean{};          ///< [m] part of the pull: what the proxy was given beyond the hand; see LateralLean
     bool       limited = false; ///< the proxy ran out of iterations
-    bool       behind  = false; ///< the hand began behind the surface, and has not been lifted off it yet
+    bool       behind  = false; ///< the hand has not been in free space yet: it began behind the surface, or somewhere
 };
 
 /// The first half of a tick: hand -> proxy.
@@ -123,21 +125,16 @@ public:
     /// \param time  [s] of the session's clock
     /// \param hip   [m]
     /// \param lean  [m] the latest of the force, ForceHalf::lean()
-    const ProxyContact& tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept;
+    /// \param isKnown  the device knows where the hand is: before, it is not taken to be anywhere
+    const ProxyContact& tick(double time, const glm::dvec3& hip, const glm::dvec3& lean, bool isKnown = true) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
 
 private:
-    enum class Entry {
-        coming, ///< from where the hand has come
-        behind, ///< the surface was in the way
-        free    ///< the hand was in free space
-    };
-
     Proxy        proxy_;
     RecentMotion motion_;
     ProxyContact held_;
-    Entry        entry_ = Entry::free;
+    bool         isFree_ = true; ///< the hand was in free space
 };
 
 /// The time between two answers of a device.
@@ -268,7 +265,8 @@ public:
 
     TickRecord tick(const ForceHalf::TickTime& now, const Hand& hand, const PatchUpdate* newest) noexcept
     {
-        return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean()), newest);
+        return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean(), hand.placeIsKnown()),
+                           newest);
     }
 
     [[nodiscard]] const Touch&           touch() const noexcept { return contact_.touch(); }

@@ -70,8 +70,8 @@ DeviceFrame frameOf(const SessionHand& hand, const Scene& scene, const SoftObjec
     return deviceFrame(hand.path ? start : place.point + scene.startHeight * place.outward, place.outward);
 }
 
-/// Returns a place just before the surface that is touched, or as far as the scene has the hand begin. An arm hangs down
-/// at first, and a person may have it anywhere: inside the object, from which the skin would not let it out.
+/// Returns a place just before the surface that is touched, or as far as the scene has the hand begin. An arm hangs
+/// down at first, and a person may have it anywhere: inside the object, from which the skin would not let it out.
 glm::dvec3 freePlace(const Scene& scene, const SoftObject& object)
 {
     constexpr double kClear = 3; // [spacings] at least

@@ -284,8 +284,8 @@ TEST(Resample, PointsMatterAsFarAsTheKernelReaches)
 }
 
 /// Means over cells, on a grid of cells a little larger than the nodes', smooth a step as their points do: the log-mean
-/// of those with its own Gaussian, of which each mean has done a part. Of a cosine of six nodes, which the Gaussian alone
-/// would leave exp(-2 (pi s / 6 h)^2) of.
+/// of those with its own Gaussian, of which each mean has done a part. Of a cosine of six nodes, which the Gaussian
+/// alone would leave exp(-2 (pi s / 6 h)^2) of.
 TEST(Resample, MeansSmoothAsThePointsThatTheyStandFor)
 {
     constexpr int     kCells = 48, kInEach = 12;

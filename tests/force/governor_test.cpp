@@ -254,6 +254,16 @@ TEST(ForceGovernor, NotHomedOutsideTheBoxClutchedOrAskedToLetGoIsZeroWithoutAFau
     }
 }
 
+TEST(ForceGovernor, AHandThatWasNotInFreeSpaceYetGetsNoForceHoweverCalm)
+{
+    Servo servo;
+    servo.in.behind = true;
+    servo.in.force  = {0, 0, 0.1};
+    EXPECT_EQ(servo.ticks(3000).force, glm::dvec3(0)) << "below the force of a calm hand";
+    servo.in.behind = false;
+    EXPECT_GT(servo.ticks(3000).force.z, 0.05);
+}
+
 TEST(ForceGovernor, APositionThatJumpsWhileHomingIsNotCountedAsWork)
 {
     Servo servo;

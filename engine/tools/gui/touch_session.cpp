@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "engine/core/contract.h"
-#include "engine/session/force_state.h"
+#include "engine/session/servo.h"
 #include "engine/tools/gui/touch_faults.h"
 
 namespace palp {
@@ -82,8 +82,10 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     std::optional<glm::dvec3> tool; // [m] in the last tick
     bool                      clutched = false;
     real.onTick = [this, &tool, &clutched, clear = stage_->object().spacing()](const TickRecord& record) {
-        tool     = record.proxy + clear * record.normal; // off the surface, so that its side is known
-        clutched = clutched || forceState(record) == ForceState::clutched;
+        tool = record.proxy + clear * record.normal; // off the surface, so that its side is known
+        Hand then;
+        then.setBits(record.device);
+        clutched = clutched || then.clutched;
         static_cast<void>(ring_.push(record)); // curves may have gaps
         tap_->push(record);
     };
@@ -92,7 +94,8 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
     const bool isReplay = replaying();
     conclude(summary);
     // A hand that was let go may be elsewhere by now; and what a clutch moved the tool by is forgotten.
-    if (!isReplay) heldAt_ = halted() || clutched ? std::nullopt : tool;
+    // One that ended before its first tick says nothing new.
+    if (!isReplay && (tool || halted())) heldAt_ = halted() || clutched ? std::nullopt : tool;
 }
 
 void TouchSession::closeTap()
@@ -123,6 +126,7 @@ void TouchSession::conclude(const SessionSummary& summary)
 void TouchSession::halt()
 {
     state_ = State::halted;
+    heldAt_.reset();
     end();
 }
 
