@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -88,6 +87,105 @@ struct Link {
     std::uint32_t face  = kNone;
     bool          alike = true; ///< both face the same way
 };
+using Links = std::vector<std::array<Link, 3>>; ///< of each triangle, the real ones first
+
+Links linksOf(SharedEdges& edges, std::size_t faces)
+{
+    Links      links(faces);
+    const auto add = [&](std::uint32_t face, const Link& link) {
+        *std::ranges::find(links[face], kNone, &Link::face) = link; // a triangle has three edges
+    };
+    edges.each([&](std::uint32_t one, std::uint32_t other, bool alike) {
+        add(one, {other, alike});
+        add(other, {one, alike});
+    });
+    return links;
+}
+
+enum class Facing : std::uint8_t {
+    unseen,
+    asFirst,  ///< as the first triangle of its piece, over the edges between them
+    asOthers, ///< the other way
+};
+
+/// Calls visit(triangles, facings of all triangles) for the triangles that hang together over edges of two, piece by
+/// piece, in the order of their first ones.
+template <class Visit>
+void eachPiece(const Links& links, Visit&& visit)
+{
+    using enum Facing;
+    std::vector<Facing>        facings(links.size(), unseen);
+    std::vector<std::uint32_t> piece;
+    for (std::uint32_t first = 0; first < links.size(); ++first) {
+        if (facings[first] != unseen) continue;
+        facings[first] = asFirst;
+        piece.assign(1, first);
+        for (std::size_t next = 0; next < piece.size(); ++next) {
+            const std::uint32_t face = piece[next];
+            for (const Link& link : links[face]) {
+                if (link.face == kNone || facings[link.face] != unseen) continue;
+                facings[link.face] = (facings[face] == asFirst) == link.alike ? asFirst : asOthers;
+                piece.push_back(link.face);
+            }
+        }
+        visit(std::as_const(piece), std::as_const(facings));
+    }
+}
+
+void turn(Triangle& face)
+{
+    std::swap(face[1], face[2]);
+}
+
+/// A closed surface.
+struct ClosedSurface {
+    std::vector<std::uint32_t> faces;
+    double                     volume = 0; ///< enclosed, below zero if it lies inside out [m^3]
+    Bounds                     box;
+    bool                       turns = false; ///< it is turned round
+};
+
+ClosedSurface surfaceOf(const std::vector<std::uint32_t>& piece, std::span<const Triangle> faces,
+                        std::span<const glm::dvec3> positions)
+{
+    // About a corner of its own, so that a body far from the origin loses no digits.
+    const glm::dvec3 middle = positions[faces[piece[0]][0]];
+    ClosedSurface    surface{piece, 0, {middle, middle}};
+    double           extent = 0; // [m^3] the sum of the parts' sizes
+    for (const std::uint32_t face : piece) {
+        const auto& [a, b, c] = faces[face];
+        const double part =
+            glm::dot(positions[a] - middle, glm::cross(positions[b] - middle, positions[c] - middle)) / 6;
+        surface.volume += part;
+        extent += std::abs(part);
+        for (const std::uint32_t corner : {a, b, c}) {
+            surface.box.low  = glm::min(surface.box.low, positions[corner]);
+            surface.box.high = glm::max(surface.box.high, positions[corner]);
+        }
+    }
+    if (std::abs(surface.volume) < 1e-9 * extent) surface.volume = 0; // a sheet folded back on itself encloses nothing
+    return surface;
+}
+
+bool liesWithin(const Bounds& inner, const Bounds& outer)
+{
+    return glm::all(glm::greaterThan(inner.low, outer.low)) && glm::all(glm::lessThan(inner.high, outer.high));
+}
+
+/// Marks the corners of a surface whose normals point inward for the larger part of its area.
+void markInward(const ClosedSurface& surface, std::span<const Triangle> faces, std::span<const glm::dvec3> positions,
+                std::span<const glm::vec3> normals, std::vector<bool>& inward)
+{
+    double outward = 0; // over triangles and their corners, of twice the area [m^2]
+    for (const std::uint32_t face : surface.faces) {
+        const auto& [a, b, c] = faces[face];
+        const glm::dvec3 area = glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
+        for (const std::uint32_t corner : {a, b, c}) outward += glm::dot(area, glm::dvec3(normals[corner]));
+    }
+    if (outward >= 0) return;
+    for (const std::uint32_t face : surface.faces)
+        for (const std::uint32_t corner : faces[face]) inward[corner] = true;
+}
 
 } // namespace
 
@@ -98,158 +196,52 @@ std::size_t turnToNeighbours(std::span<Triangle> faces, std::span<const glm::dve
     edges.each([&](std::uint32_t, std::uint32_t, bool alike) { allAlike = allAlike && alike; });
     if (allAlike) return 0;
 
-    std::vector<std::array<Link, 3>> links(faces.size());
-    const auto                       add = [&](std::uint32_t face, const Link& link) {
-        *std::ranges::find(links[face], kNone, &Link::face) = link; // a triangle has three edges
-    };
-    edges.each([&](std::uint32_t one, std::uint32_t other, bool alike) {
-        add(one, {other, alike});
-        add(other, {one, alike});
-    });
-    enum : std::uint8_t { unseen, kept, turned };
-    std::vector<std::uint8_t>  states(faces.size(), unseen);
-    std::vector<std::uint32_t> piece;
-    std::size_t                count = 0;
-    for (std::uint32_t first = 0; first < faces.size(); ++first) {
-        if (states[first] != unseen) continue;
-        states[first] = kept;
-        piece.assign(1, first);
-        double area[2] = {0, 0}; // [m^2] of the triangles that face as the first does, and of the others
-        for (std::size_t next = 0; next < piece.size(); ++next) {
-            const std::uint32_t face = piece[next];
-            area[states[face] == turned] += areaOf(faces[face], positions);
-            for (const Link& link : links[face]) {
-                if (link.face == kNone || states[link.face] != unseen) continue;
-                states[link.face] = (states[face] == kept) == link.alike ? kept : turned;
-                piece.push_back(link.face);
-            }
-        }
+    std::size_t count = 0;
+    eachPiece(linksOf(edges, faces.size()), [&](const auto& piece, const auto& facings) {
+        double asFirst = 0, asOthers = 0; // [m^2] areas
+        for (const std::uint32_t face : piece)
+            (facings[face] == Facing::asFirst ? asFirst : asOthers) += areaOf(faces[face], positions);
         // Sums of equal areas differ by rounding, which must not decide.
-        const auto wrong = area[1] > area[0] * (1 + 1e-9) ? kept : turned;
+        const auto wrong = asOthers > asFirst * (1 + 1e-9) ? Facing::asFirst : Facing::asOthers;
         for (const std::uint32_t face : piece) {
-            if (states[face] != wrong) continue;
-            std::swap(faces[face][1], faces[face][2]);
+            if (facings[face] != wrong) continue;
+            turn(faces[face]);
             ++count;
         }
-    }
+    });
     return count;
 }
-
-namespace {
-
-/// Triangles that hang together over edges of two.
-struct Piece {
-    std::vector<std::uint32_t> faces;
-    std::size_t                shared = 0;    ///< edges
-    bool                       alike  = true; ///< all face as their neighbours do
-    double                     volume = 0;    ///< enclosed, below zero if it lies inside out [m^3]; closed pieces'
-    Bounds                     box;           ///< closed pieces'
-
-    [[nodiscard]] bool isClosed() const { return alike && 2 * shared == 3 * faces.size(); }
-};
-
-/// Returns the pieces of a mesh, in the order of their first triangles.
-std::vector<Piece> piecesOf(std::span<const Triangle> faces, std::size_t points)
-{
-    SharedEdges                edges(faces, points);
-    std::vector<std::uint32_t> root(faces.size());
-    std::iota(root.begin(), root.end(), 0U);
-    const auto rootOf = [&root](std::uint32_t face) {
-        while (root[face] != face) face = root[face] = root[root[face]];
-        return face;
-    };
-    edges.each([&](std::uint32_t one, std::uint32_t other, bool) {
-        const std::uint32_t a = rootOf(one), b = rootOf(other);
-        root[std::max(a, b)] = std::min(a, b);
-    });
-    std::vector<Piece>         pieces;
-    std::vector<std::uint32_t> pieceOf(faces.size());
-    for (std::uint32_t face = 0; face < faces.size(); ++face) {
-        const std::uint32_t first = rootOf(face);
-        if (first == face) {
-            pieceOf[face] = std::uint32_t(pieces.size());
-            pieces.emplace_back();
-        }
-        pieceOf[face] = pieceOf[first];
-        pieces[pieceOf[face]].faces.push_back(face);
-    }
-    edges.each([&](std::uint32_t one, std::uint32_t, bool alike) {
-        Piece& piece = pieces[pieceOf[one]];
-        ++piece.shared;
-        piece.alike = piece.alike && alike;
-    });
-    return pieces;
-}
-
-void measure(Piece& piece, std::span<const Triangle> faces, std::span<const glm::dvec3> positions)
-{
-    // About a corner of its own, so that a body far from the origin loses no digits.
-    const glm::dvec3 middle = positions[faces[piece.faces[0]][0]];
-    double           extent = 0; // [m^3] the sum of the parts' sizes
-    piece.box               = {middle, middle};
-    for (const std::uint32_t face : piece.faces) {
-        const auto& [a, b, c] = faces[face];
-        const double part =
-            glm::dot(positions[a] - middle, glm::cross(positions[b] - middle, positions[c] - middle)) / 6;
-        piece.volume += part;
-        extent += std::abs(part);
-        for (const std::uint32_t corner : {a, b, c}) {
-            piece.box.low  = glm::min(piece.box.low, positions[corner]);
-            piece.box.high = glm::max(piece.box.high, positions[corner]);
-        }
-    }
-    if (std::abs(piece.volume) < 1e-9 * extent) piece.volume = 0; // a sheet folded back on itself encloses nothing
-}
-
-bool liesWithin(const Bounds& inner, const Bounds& outer)
-{
-    return glm::all(glm::greaterThan(inner.low, outer.low)) && glm::all(glm::lessThan(inner.high, outer.high));
-}
-
-/// Marks the corners of a piece whose normals point inward for the larger part of its area.
-void markInward(const Piece& piece, std::span<const Triangle> faces, std::span<const glm::dvec3> positions,
-                std::span<const glm::vec3> normals, std::vector<bool>& inward)
-{
-    double outward = 0; // over triangles and their corners, of twice the area [m^2]
-    for (const std::uint32_t face : piece.faces) {
-        const auto& [a, b, c] = faces[face];
-        const glm::dvec3 area = glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
-        for (const std::uint32_t corner : {a, b, c}) outward += glm::dot(area, glm::dvec3(normals[corner]));
-    }
-    if (outward >= 0) return;
-    for (const std::uint32_t face : piece.faces)
-        for (const std::uint32_t corner : faces[face]) inward[corner] = true;
-}
-
-} // namespace
 
 TurnedOutward turnOutward(std::span<Triangle> faces, std::span<const glm::dvec3> positions,
                           std::span<glm::vec3> normals)
 {
     constexpr std::size_t kMostBodies = 100; // that are asked whether they hold another
 
-    std::vector<Piece> pieces = piecesOf(faces, positions.size());
-    std::erase_if(pieces, [](const Piece& piece) { return !piece.isClosed(); });
-    for (Piece& piece : pieces) measure(piece, faces, positions);
-    std::ranges::stable_sort(pieces, std::greater(), [](const Piece& piece) { return piece.box.diagonal(); });
-    std::vector<const Piece*> bodies;
-    std::vector<bool>         turns(pieces.size()); // a body for itself, a wall as its body does
-    std::vector<std::size_t>  bodyAt;
-    std::vector<bool>         inward(normals.size()); // corners
-    TurnedOutward             turned;
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-        const auto body =
-            std::ranges::find_if(bodies, [&](const Piece* other) { return liesWithin(pieces[k].box, other->box); });
-        turns[k] = body != bodies.end() ? turns[bodyAt[std::size_t(body - bodies.begin())]] : pieces[k].volume < 0;
-        if (body == bodies.end() && bodies.size() < kMostBodies) {
-            bodies.push_back(&pieces[k]);
-            bodyAt.push_back(k);
+    SharedEdges edges(faces, positions.size());
+    const Links links  = linksOf(edges, faces.size());
+    const auto  closed = [&](std::uint32_t face) {
+        return std::ranges::all_of(links[face], [](const Link& link) { return link.face != kNone && link.alike; });
+    };
+    std::vector<ClosedSurface> surfaces;
+    eachPiece(links, [&](const auto& piece, const auto&) {
+        if (std::ranges::all_of(piece, closed)) surfaces.push_back(surfaceOf(piece, faces, positions));
+    });
+    std::ranges::stable_sort(surfaces, std::greater(),
+                             [](const ClosedSurface& surface) { return surface.box.diagonal(); });
+
+    std::vector<const ClosedSurface*> bodies;
+    std::vector<bool>                 inward(normals.size()); // corners
+    TurnedOutward                     turned;
+    for (ClosedSurface& surface : surfaces) {
+        const auto body = std::ranges::find_if(
+            bodies, [&](const ClosedSurface* other) { return liesWithin(surface.box, other->box); });
+        surface.turns = body != bodies.end() ? (*body)->turns : surface.volume < 0; // a wall as its body
+        if (body == bodies.end() && bodies.size() < kMostBodies) bodies.push_back(&surface);
+        if (surface.turns) {
+            for (const std::uint32_t face : surface.faces) turn(faces[face]);
+            turned.faces += surface.faces.size();
         }
-        if (turns[k]) {
-            for (const std::uint32_t face : pieces[k].faces) std::swap(faces[face][1], faces[face][2]);
-            turned.faces += pieces[k].faces.size();
-        }
-        if (!normals.empty()) markInward(pieces[k], faces, positions, normals, inward);
+        if (!normals.empty()) markInward(surface, faces, positions, normals, inward);
     }
     for (std::size_t corner = 0; corner < normals.size(); ++corner)
         if (inward[corner]) {

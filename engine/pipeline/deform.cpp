@@ -695,9 +695,9 @@ Surroundings surroundingsOf(const SoftObject& object, std::uint32_t nearest, con
 std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Contact& contact,
                                               const PatchSettings& settings)
 {
-    constexpr double kNearly =
-        1.5; // a single point's spacing scatters: the mean decides, or touches side by side differ
-    const SurfaceSurvey& survey = object.survey();
+    // A single point's spacing scatters: the mean decides, or touches side by side would differ.
+    constexpr double     kNearly = 1.5;
+    const SurfaceSurvey& survey  = object.survey();
     if (settings.neighbourhood == Neighbourhood::ball || survey.spacings().empty()) return {};
     const std::uint32_t nearest = object.index().nearest(contact.point, 1).front().point;
     const double        noise   = survey.noise(nearest);

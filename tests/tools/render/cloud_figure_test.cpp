@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/pipeline/deform.h"
 #include "tests/support/shader_fixture.h"
 #include "tests/tools/plot/svg_reader.h"
 
@@ -155,6 +156,32 @@ TEST_F(CloudFigureTest, TheSameFigureTwiceIsTheSameToTheByte)
     static_cast<void>(next(Sheet(30)));
     EXPECT_EQ(next(sheet), fresh()) << "a renderer that has drawn another figure";
     EXPECT_EQ(&kept.opened(), first) << "opening a device takes longer than a figure";
+}
+
+/// A dense cloud is touched by one point for many, and all of them are drawn where they move.
+TEST_F(CloudFigureTest, ADenseObjectIsDentedWhereItIsTouched)
+{
+    constexpr int           kSide = 300;
+    std::vector<glm::dvec3> points;
+    for (int i = 0; i < kSide; ++i)
+        for (int j = 0; j < kSide; ++j)
+            points.emplace_back(0.06 * (i + 0.5) / kSide - 0.03, 0.06 * (j + 0.5) / kSide - 0.03, 0);
+    const PointCloud cloud(points, std::vector<double>(points.size(), 1e6), StiffnessKind::modulus);
+    const Patch      patch = deform(SoftObject(cloud), {{5e-3, 4e-3, 0}, {0, 0, 1}},
+                                    PatchSettings{.window = 30e-3, .cells = 32, .footprintRadius = 4e-3});
+    ASSERT_TRUE(patch.coarse);
+    const double     force = 1e-4 / patch.compliance; // [N]
+    const glm::dvec3 along = force * patch.forceDirection();
+
+    CloudFigure figure = fromAbove();
+    figure.evenLight   = 0;
+    figure.up          = {0, 0, 1};
+    figure.direction   = {-0.5, 0.6, -1};
+    figure.marks       = {patch.contact.point + patch.response(16, 16) * along};
+    FigureRenderer renderer;
+    EXPECT_EQ(surfaceSvg(cloud, std::vector<PressedPatch>{{&patch, force, ""}},
+                         {.title = "", .direction = figure.direction}, renderer),
+              figureSvg(points, displaced(cloud, patch, force), deflections(cloud, patch, force), figure));
 }
 
 } // namespace
