@@ -46,10 +46,10 @@ ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std
     isFree_ = false;
 }
 
-const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean, bool isKnown) noexcept
+const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept
 {
-    const ProxyState& proxy = isFree_ || isKnown ? proxy_.step(hip + lean) : proxy_.state();
-    isFree_                 = isFree_ || (isKnown && !proxy.touching && proxy.position == hip + lean);
+    const ProxyState& proxy = proxy_.step(hip + lean);
+    isFree_                 = isFree_ || (!proxy.touching && proxy.position == hip + lean);
     motion_.add(time, proxy.position);
     glm::dvec3 velocity = motion_.velocity();
     if (proxy.touching) velocity -= glm::dot(velocity, proxy.normal) * proxy.normal; // of the way down to the surface

@@ -69,8 +69,6 @@ struct Hand {
     bool          letGo    = false;        ///< see GovernorInput
     bool          clutched = false;        ///< likewise
 
-    [[nodiscard]] bool placeIsKnown() const noexcept { return homed && inBox; }
-
     /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
@@ -125,8 +123,7 @@ public:
     /// \param time  [s] of the session's clock
     /// \param hip   [m]
     /// \param lean  [m] the latest of the force, ForceHalf::lean()
-    /// \param isKnown  the device knows where the hand is: before, it is not taken to be anywhere
-    const ProxyContact& tick(double time, const glm::dvec3& hip, const glm::dvec3& lean, bool isKnown = true) noexcept;
+    const ProxyContact& tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
 
@@ -265,8 +262,7 @@ public:
 
     TickRecord tick(const ForceHalf::TickTime& now, const Hand& hand, const PatchUpdate* newest) noexcept
     {
-        return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean(), hand.placeIsKnown()),
-                           newest);
+        return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean()), newest);
     }
 
     [[nodiscard]] const Touch&           touch() const noexcept { return contact_.touch(); }
