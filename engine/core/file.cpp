@@ -1,8 +1,10 @@
 #include "engine/core/file.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <deque>
 #include <optional>
 #include <ostream>
 #include <streambuf>
@@ -30,13 +32,14 @@ std::string reasonOfErrno()
     throw Error(shownPath(path.string()) + ": cannot be written: " + reason);
 }
 
-/// Whether somebody else put this into a folder where anybody may write.
+/// Whether somebody else, neither root nor the folder's owner, put this into a folder where anybody may write.
 bool isStrangers(const struct stat& own, const std::filesystem::path& path)
 {
     struct stat       folder {};
     const std::string parent = path.has_parent_path() ? path.parent_path().string() : ".";
     if (::stat(parent.c_str(), &folder) != 0) return false;
-    return (folder.st_mode & S_IWOTH) && own.st_uid != ::geteuid() && own.st_uid != folder.st_uid;
+    const bool isTrusted = own.st_uid == ::geteuid() || own.st_uid == 0 || own.st_uid == folder.st_uid;
+    return (folder.st_mode & S_IWOTH) && !isTrusted;
 }
 
 /// Refuses a link of somebody else, which the kernel does not follow either (fs.protected_symlinks) but whoever
@@ -48,38 +51,49 @@ void refuseStrangers(const std::filesystem::path& path, const struct stat& own, 
     if (isStrangers(own, place))
         refuseToWrite(path, place.string() + " is " + what +
                                 " that another user put into a folder where anybody may write; remove it, or name "
-                                "another file");
+                                "another place");
 }
 
-/// Opens what is no file, such as a pipe or /dev/null, for writing.
-/// \param place  where the links lead that begin at the path
-int openOther(const std::filesystem::path& path, const std::filesystem::path& place)
+/// Opens what is there for writing: a pipe, /dev/null, or a file that grows.
+/// \param place  where the links lead that stand in the path
+/// \return -1, with errno, if the system refuses
+int openThere(const std::filesystem::path& path, const std::filesystem::path& place, int how = 0)
 {
-    const auto  what = [](const struct stat& of) { return S_ISFIFO(of.st_mode) ? "a pipe" : "a device or a socket"; };
+    const auto  isLost = [&](const struct stat& of) { return !S_ISREG(of.st_mode) && isStrangers(of, place); };
+    const auto  what   = [](const struct stat& of) { return S_ISFIFO(of.st_mode) ? "a pipe" : "a device or a socket"; };
     struct stat seen {};
-    if (::stat(path.c_str(), &seen) == 0) refuseStrangers(path, seen, place, what(seen)); // a pipe may block
+    if (::stat(path.c_str(), &seen) == 0 && isLost(seen)) // a pipe may block
+        refuseStrangers(path, seen, place, what(seen));
     // By the path itself: where /dev/stdout leads to a pipe, the text of its last link is no name.
-    const int   handle = ::open(path.c_str(), O_WRONLY | O_CLOEXEC);
+    const int   handle = ::open(path.c_str(), O_WRONLY | O_CLOEXEC | how);
     struct stat opened {};
-    if (handle < 0 || ::fstat(handle, &opened) != 0 || !isStrangers(opened, place)) return handle;
+    if (handle < 0 || ::fstat(handle, &opened) != 0 || !isLost(opened)) return handle;
     ::close(handle); // it was changed meanwhile
     refuseStrangers(path, opened, place, what(opened));
     return -1;
 }
 
-/// Returns where a chain of links leads to, so that a link stays a link when its file is replaced.
+/// Returns where a path leads when each link in it is followed, so that a link stays a link when its file is replaced,
+/// and no stranger's link is followed wherever it stands. What is not there yet keeps its name.
 std::filesystem::path behindLinks(const std::filesystem::path& path)
 {
-    constexpr int         kMostLinks = 40; // as the kernel has it
-    std::filesystem::path place      = path;
-    std::error_code       status;
-    for (int links = 0; std::filesystem::is_symlink(place, status); ++links) {
-        if (links == kMostLinks) refuseToWrite(path, "too many links lead from one to the next");
+    constexpr int                     kMostLinks = 40; // as the kernel has it
+    std::filesystem::path             place;
+    std::deque<std::filesystem::path> ahead(path.begin(), path.end());
+    for (int links = 0; !ahead.empty();) {
+        const std::filesystem::path next = place / ahead.front();
+        ahead.pop_front();
         struct stat own {};
-        if (::lstat(place.c_str(), &own) == 0) refuseStrangers(path, own, place, "a link");
-        const std::filesystem::path target = std::filesystem::read_symlink(place, status);
-        if (status) refuseToWrite(path, status.message());
-        place = place.parent_path() / target;
+        if (::lstat(next.c_str(), &own) != 0 || !S_ISLNK(own.st_mode)) {
+            place = next;
+            continue;
+        }
+        if (++links > kMostLinks) refuseToWrite(path, "too many links lead from one to the next");
+        refuseStrangers(path, own, next, "a link");
+        std::error_code             failure;
+        const std::filesystem::path target = std::filesystem::read_symlink(next, failure);
+        if (failure) refuseToWrite(path, failure.message());
+        ahead.insert(ahead.begin(), target.begin(), target.end()); // an absolute one begins with /, which ends `place`
     }
     return place;
 }
@@ -289,7 +303,7 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     errno = 0;
     std::optional<Draft> draft;
     if (replaceable) draft.emplace(place);
-    OpenFile file(draft ? draft->handle() : openOther(path, place));
+    OpenFile file(draft ? draft->handle() : openThere(path, place));
     if (!file.isOpen()) refuseToWrite(path, reasonOfErrno());
     if (draft) keepMode(draft->handle(), place);
     std::ostream stream(&file);
@@ -297,6 +311,31 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     write(stream);
     if (!stream.flush() || (draft && !draft->name()) || !file.close() || (draft && !draft->replace()))
         refuseToWrite(path, reasonOfErrno());
+}
+
+void appendToFile(const std::filesystem::path& path, std::string_view bytes)
+{
+    const int handle = openThere(path, behindLinks(path), O_APPEND);
+    if (handle < 0) refuseToWrite(path, reasonOfErrno());
+    const off_t before = ::lseek(handle, 0, SEEK_END);
+    bool        good   = before >= 0;
+    for (std::string_view rest = bytes; good && !rest.empty();) {
+        const ssize_t written = ::write(handle, rest.data(), rest.size());
+        good                  = written > 0 || (written < 0 && errno == EINTR);
+        rest.remove_prefix(std::size_t(std::max(written, ssize_t(0))));
+    }
+    good                           = good && ::fsync(handle) == 0;
+    const int                  why = errno;
+    [[maybe_unused]] const int cut = good ? 0 : ::ftruncate(handle, before);
+    ::close(handle); // what is synchronized has no fault left to say
+    if (!good) refuseToWrite(path, std::strerror(why));
+}
+
+int makeFile(const std::filesystem::path& path)
+{
+    const int handle = ::open(behindLinks(path).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    if (handle < 0) throw Error(shownPath(path.string()) + ": cannot be made: " + reasonOfErrno());
+    return handle;
 }
 
 FolderLock::FolderLock(const std::filesystem::path& folder, const std::string& taken)
@@ -315,10 +354,16 @@ FolderLock::~FolderLock()
 
 void makeFolder(const std::filesystem::path& path)
 {
-    std::error_code failure;
-    std::filesystem::create_directories(path, failure);
-    if (failure || !std::filesystem::is_directory(path))
-        throw Error(path.string() +
+    std::error_code       failure;
+    std::filesystem::path made;
+    for (const std::filesystem::path& step : path) { // one by one: what a step leads to is known once it is there
+        made /= step;
+        const std::filesystem::path place = behindLinks(made);
+        if (!std::filesystem::exists(place, failure)) std::filesystem::create_directory(place, failure);
+        if (failure) break;
+    }
+    if (failure || !std::filesystem::is_directory(behindLinks(path), failure)) // a link may have come meanwhile
+        throw Error(shownPath(path.string()) +
                     ": the folder cannot be made: " + (failure ? failure.message() : "something else has that name"));
 }
 

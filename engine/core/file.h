@@ -6,6 +6,7 @@
 #include <functional>
 #include <istream>
 #include <string>
+#include <string_view>
 #include <utility>
 
 namespace palp {
@@ -70,10 +71,21 @@ enum class Pipes { read, refused };
 
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
 /// After a failure (an exception in `write`, a full disk) an older file at `path` is as it was and no partly written
-/// file remains. The file keeps the permissions of the older one. A link stays a link, and its file is replaced; one
-/// that another user put into a folder where anybody may write, such as /tmp, is refused.
+/// file remains. The file keeps the permissions of the older one. A link stays a link, and its file is replaced. A link
+/// that another user, neither root nor the folder's owner, put into a folder where anybody may write, such as /tmp, is
+/// refused wherever it stands in the path, here and by each function below that writes.
 /// \throws Error naming the path and the reason
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// Appends bytes to a file that is there, and waits until the disk has them. After a failure the file has its former
+/// length again, or ends in a part of the bytes where the system refuses that, too.
+/// \throws Error naming the path and the reason
+void appendToFile(const std::filesystem::path& path, std::string_view bytes);
+
+/// Makes a new file, and opens it for writing.
+/// \return its handle, which the caller closes
+/// \throws Error naming the path and the reason; also if there is something of that name
+[[nodiscard]] int makeFile(const std::filesystem::path& path);
 
 /// The right to write into a folder, for one process at a time. The system ends it with the process, however that ends.
 class FolderLock {

@@ -244,6 +244,155 @@ TEST_F(Files, AStrangersLinkInAFolderOfAnybodyIsRefused)
     EXPECT_EQ(contentsOf(folder_ / "mine"), "new") << "a link of our own may lie anywhere";
 }
 
+/// Acts as another user while it lives.
+class AsUser {
+public:
+    explicit AsUser(uid_t user) { EXPECT_EQ(::seteuid(user), 0); }
+    ~AsUser() { EXPECT_EQ(::seteuid(0), 0); }
+    AsUser(const AsUser&)            = delete;
+    AsUser& operator=(const AsUser&) = delete;
+};
+
+/// A folder of mine, one of anybody's beside it, and another user who puts links into that.
+class FilesBesideStrangers : public Files {
+protected:
+    static constexpr uid_t kStranger = 65534, kOwner = 65533, kMe = 65532;
+
+    void SetUp() override
+    {
+        if (::geteuid() != 0) GTEST_SKIP() << "only root can make another user's link";
+        makeFolder(mine_);
+        makeFolder(shared_);
+        std::ofstream(mine_ / "a") << "kept";
+        ASSERT_EQ(::chmod(shared_.c_str(), 01777), 0);
+    }
+
+    static void linkOf(uid_t user, const std::filesystem::path& link, const std::filesystem::path& target)
+    {
+        std::filesystem::create_symlink(target, link);
+        ASSERT_EQ(::lchown(link.c_str(), user, user), 0);
+    }
+
+    /// Writes into a folder in each way there is, and expects each to be refused and nothing to be changed.
+    void expectAllRefused(const std::filesystem::path& folder) const
+    {
+        const auto expectRefused = [](const auto& write) {
+            const std::string refusal = refusalOf(write);
+            EXPECT_TRUE(holds(refusal, {"a link that another user put"})) << refusal;
+        };
+        expectRefused([&] { writeFileWhole(folder / "a", writeNew); });
+        expectRefused([&] { writeFileWhole(folder / "b", writeNew); });
+        expectRefused([&] { appendToFile(folder / "a", "new"); });
+        expectRefused([&] { ::close(makeFile(folder / "b")); });
+        expectRefused([&] { makeFolder(folder); });
+        expectRefused([&] { makeFolder(folder / ""); });
+        expectRefused([&] { makeFolder(folder / "b" / "c"); });
+        EXPECT_EQ(contentsOf(mine_ / "a"), "kept");
+        EXPECT_EQ(std::distance(std::filesystem::directory_iterator(mine_), {}), 1);
+    }
+
+    const std::filesystem::path mine_ = folder_ / "mine", shared_ = folder_ / "shared";
+};
+
+TEST_F(FilesBesideStrangers, ALinkInTheMiddleOfAPathIsRefused)
+{
+    linkOf(kStranger, shared_ / "out", mine_);
+    linkOf(kStranger, shared_ / "far", folder_.path());
+    expectAllRefused(shared_ / "out");
+    expectAllRefused(shared_ / "far" / "mine");
+    expectAllRefused(std::filesystem::proximate(shared_) / "out");
+    expectAllRefused(shared_ / ".." / "shared" / "." / "out");
+}
+
+TEST_F(FilesBesideStrangers, ALinkBehindOwnLinksIsRefused)
+{
+    linkOf(kStranger, shared_ / "out", mine_);
+    std::filesystem::create_symlink("shared/out", folder_ / "relative");
+    std::filesystem::create_symlink(shared_ / "out" / "", folder_ / "absolute");
+    std::filesystem::create_symlink("../shared/../relative", shared_ / "chain");
+    for (const char* const first : {"relative", "absolute", "shared/chain"}) expectAllRefused(folder_ / first);
+}
+
+TEST_F(FilesBesideStrangers, ALinkThatIsReachedByANewFolderIsRefused)
+{
+    linkOf(kStranger, shared_ / "out", mine_);
+    EXPECT_NE(refusalOf([&] { makeFolder(shared_ / "new" / ".." / "out" / "b"); }), "");
+    EXPECT_FALSE(std::filesystem::exists(mine_ / "b"));
+}
+
+TEST_F(FilesBesideStrangers, LinksOfOnesOwnOfRootAndOfTheFoldersOwnerAreFollowed)
+{
+    ASSERT_EQ(::chown(shared_.c_str(), kOwner, kOwner), 0);
+    ASSERT_EQ(::chmod(folder_.path().c_str(), 0755), 0);
+    for (const auto& path : {mine_, mine_ / "a"}) ASSERT_EQ(::chown(path.c_str(), kMe, kMe), 0);
+    linkOf(kMe, shared_ / "own", mine_);
+    linkOf(0, shared_ / "roots", mine_);
+    linkOf(kOwner, shared_ / "owners", mine_);
+    linkOf(kStranger, shared_ / "strangers", mine_);
+
+    const AsUser me(kMe);
+    for (const std::string whose : {"own", "roots", "owners"}) {
+        writeFileWhole(shared_ / whose / "a", writeNew);
+        makeFolder(shared_ / whose / whose / "b");
+        ::close(makeFile(shared_ / whose / "b" += whose));
+        EXPECT_TRUE(std::filesystem::is_directory(mine_ / whose / "b"));
+        EXPECT_TRUE(std::filesystem::exists(mine_ / "b" += whose));
+    }
+    EXPECT_NE(refusalOf([&] { writeFileWhole(shared_ / "strangers" / "a", [](std::ostream&) {}); }), "");
+    EXPECT_EQ(contentsOf(mine_ / "a"), "new");
+}
+
+TEST_F(FilesBesideStrangers, WhatIsReadIsNotConcerned)
+{
+    ASSERT_EQ(::chmod(shared_.c_str(), 0777), 0); // where it is sticky the system may refuse (fs.protected_symlinks)
+    linkOf(kStranger, shared_ / "out", mine_);
+    EXPECT_EQ(readWhole(shared_ / "out" / "a", 10, "a text"), "kept");
+    expectAllRefused(shared_ / "out");
+}
+
+TEST_F(FilesBesideStrangers, APipeIsNotAppendedToNorWaitedForAndAFileIs)
+{
+    ASSERT_EQ(::mkfifo((shared_ / "pipe").c_str(), 0666), 0);
+    std::ofstream(shared_ / "file") << "theirs";
+    for (const char* const name : {"pipe", "file"})
+        ASSERT_EQ(::chown((shared_ / name).c_str(), kStranger, kStranger), 0);
+    const std::string refusal = refusalOf([&] { appendToFile(shared_ / "pipe", "new"); });
+    EXPECT_TRUE(holds(refusal, {"a pipe that another user put"})) << refusal;
+    appendToFile(shared_ / "file", " and ours");
+    EXPECT_EQ(contentsOf(shared_ / "file"), "theirs and ours");
+}
+
+TEST_F(Files, AsManyLinksAreFollowedAsTheSystemFollows)
+{
+    makeFolder(folder_ / "0");
+    for (int n = 1; n <= 41; ++n) std::filesystem::create_symlink(std::to_string(n - 1), folder_ / std::to_string(n));
+    writeFileWhole(folder_ / "40" / "a", writeNew);
+    EXPECT_EQ(contentsOf(folder_ / "0" / "a"), "new");
+    const std::string refusal = refusalOf([&] { writeFileWhole(folder_ / "41" / "a", writeNew); });
+    EXPECT_TRUE(holds(refusal, {"too many links"})) << refusal;
+}
+
+TEST_F(Files, WhatIsAppendedStandsAtTheEndOfAFileThatIsThere)
+{
+    std::ofstream(folder_ / "a") << "old";
+    std::filesystem::create_symlink("a", folder_ / "link");
+    appendToFile(folder_ / "link", " and new");
+    EXPECT_EQ(contentsOf(folder_ / "a"), "old and new");
+    EXPECT_TRUE(std::filesystem::is_symlink(folder_ / "link"));
+    const std::string missing = refusalOf([&] { appendToFile(folder_ / "b", "new"); });
+    EXPECT_TRUE(holds(missing, {"b: cannot be written: No such file"})) << missing;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "b"));
+}
+
+TEST_F(Files, ANewFileIsNotMadeWhereThereIsOne)
+{
+    std::ofstream(folder_ / "a") << "old";
+    std::filesystem::create_symlink("nowhere", folder_ / "link");
+    const std::string refusal = refusalOf([&] { ::close(makeFile(folder_ / "a")); });
+    EXPECT_TRUE(holds(refusal, {"a: cannot be made: File exists"})) << refusal;
+    EXPECT_EQ(contentsOf(folder_ / "a"), "old");
+}
+
 TEST_F(Files, AStrangersPipeInAFolderOfAnybodyIsRefused)
 {
     if (::geteuid() != 0) GTEST_SKIP() << "only root can make another user's pipe";

@@ -4,11 +4,11 @@
 #include <cstring>
 #include <string>
 
-#include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "engine/core/contract.h"
+#include "engine/core/file.h"
 
 namespace palp {
 namespace {
@@ -20,11 +20,7 @@ std::string reasonOfErrno()
 
 } // namespace
 
-GrowingFile::GrowingFile(std::filesystem::path path)
-    : path_(std::move(path)), handle_(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644))
-{
-    if (handle_ < 0) throw Error(path_.string() + ": cannot be made: " + reasonOfErrno());
-}
+GrowingFile::GrowingFile(std::filesystem::path path) : path_(std::move(path)), handle_(makeFile(path_)) {}
 
 GrowingFile::~GrowingFile()
 {

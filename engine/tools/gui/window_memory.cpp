@@ -44,7 +44,7 @@ void remember(const nlohmann::json& values) noexcept
         if (file.empty()) return;
         nlohmann::json all = remembered();
         all.update(values);
-        std::filesystem::create_directories(file.parent_path());
+        makeFolder(file.parent_path());
         const std::string text = all.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
         writeFileWhole(file, [&](std::ostream& stream) { stream << text; });
     } catch (...) { // what is remembered is not worth an error
