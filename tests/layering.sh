@@ -80,8 +80,11 @@ claim 'a port of the network is opened, beyond those of markers and of the bridg
     'session/udp_address\.cpp|hid/bridge_lines\.cpp'
 claim 'the clock on the wall is read, which jumps; it is for dates alone' 'system_clock|CLOCK_REALTIME|\btime\(nullptr\)' \
     'session/(session_clocks\.h|recording\.cpp|udp_outlet\.h)|tools/cli/calibrate\.cpp'
-claim 'a file is written past writeFileWhole()' 'ofstream|\bfopen\(|\bfreopen\(|O_CREAT|mkstemp|\bcreat\(' \
-    'core/file\.cpp|session/detail/growing_file\.cpp'
+claim 'a file or a folder is written past core/file.h, which refuses links of strangers' \
+    'ofstream|\bfopen\(|\bfreopen\(|O_CREAT|O_APPEND|O_TRUNC|mkstemp|\bcreat\(|create_director|\bmkdir(at)?\(' \
+    'core/file\.cpp'
+claim 'a file is opened for writing past core/file.h, and is no device or stream' 'O_WRONLY|O_RDWR' \
+    'core/file\.cpp|hid/(hidapi_system|bridge_lines)\.cpp|falcon/detail/usb_node\.cpp|tools/cli/main\.cpp'
 
 # wall LIBRARY PATTERN FILES: only FILES may hold includes that match PATTERN
 wall() {

@@ -267,6 +267,21 @@ TEST(Recording, NoSessionIsOverwritten)
     EXPECT_NO_THROW(static_cast<void>(recorded(folder / "empty", 5))) << "an empty folder is nobody's";
 }
 
+TEST(Recording, IsNotMadeThroughALinkThatAnotherUserPutIntoAFolderOfAnybody)
+{
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can make another user's link";
+    constexpr uid_t       kStranger = 65534;
+    const TemporaryFolder folder, mine;
+    std::filesystem::create_directory_symlink(mine.path(), folder / "run");
+    ASSERT_EQ(::lchown((folder / "run").c_str(), kStranger, kStranger), 0);
+    std::filesystem::permissions(folder.path(), std::filesystem::perms::all);
+    for (const auto& run : {folder / "run", folder / "run" / "1"}) {
+        const auto sentence = refusalOf([&] { const Recording recording(run, someInfo()); });
+        EXPECT_TRUE(holds(sentence, {"run", "a link that another user put"})) << sentence;
+    }
+    EXPECT_TRUE(std::filesystem::is_empty(mine.path()));
+}
+
 TEST(Recording, FilesAreWholeAtEveryMoment)
 {
     const TemporaryFolder folder;

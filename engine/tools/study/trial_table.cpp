@@ -1,12 +1,7 @@
 #include "engine/tools/study/trial_table.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <functional>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include "engine/cloud/tokens.h"
 #include "engine/core/contract.h"
@@ -211,26 +206,6 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
     return rows;
 }
 
-/// Appends bytes and waits until the disk has them.
-/// \throws Error naming the file and the reason; then the file has its former length
-void appendNow(const std::filesystem::path& file, const std::string& bytes)
-{
-    const int handle = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    if (handle < 0) throw Error(file.string() + ": cannot be written: " + std::strerror(errno));
-    const off_t before = ::lseek(handle, 0, SEEK_END);
-    bool        good   = before >= 0;
-    for (std::string_view rest = bytes; good && !rest.empty();) {
-        const ssize_t written = ::write(handle, rest.data(), rest.size());
-        good                  = written > 0 || (written < 0 && errno == EINTR);
-        rest.remove_prefix(std::size_t(std::max(written, ssize_t(0))));
-    }
-    good                           = good && ::fsync(handle) == 0;
-    const int                  why = errno;
-    [[maybe_unused]] const int cut = good ? 0 : ::ftruncate(handle, before); // else the next run removes the cut line
-    ::close(handle); // what is synchronized has no fault left to say
-    if (!good) throw Error(file.string() + ": cannot be written: " + std::strerror(why));
-}
-
 } // namespace
 
 std::vector<TrialRow> readTrials(const std::filesystem::path& file)
@@ -251,7 +226,7 @@ void TrialTable::append(const TrialRow& row)
 {
     if (rows_.size() == kMostTrials)
         throw Error(file_.string() + ": it has " + kMostInWords + ", which is the most; begin another study");
-    appendNow(file_, line([&](const Column& column) { return column.write(row); }));
+    appendToFile(file_, line([&](const Column& column) { return column.write(row); }));
     rows_.push_back(row);
 }
 

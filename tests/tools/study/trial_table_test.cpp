@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "tests/support/temporary_folder.h"
 
@@ -111,6 +112,25 @@ TEST(TrialTable, APipeInItsPlaceIsNotWaitedFor)
     const TemporaryFolder folder;
     ASSERT_EQ(::mkfifo((folder / "trials.csv").c_str(), 0666), 0);
     EXPECT_TRUE(holds(refusalOf([&] { TrialTable table(folder / "trials.csv"); }), {"found a pipe"}));
+}
+
+TEST(TrialTable, IsNotContinuedThroughALinkThatAnotherUserPutIntoAFolderOfAnybody)
+{
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can make another user's link";
+    constexpr uid_t       kStranger = 65534;
+    const TemporaryFolder folder;
+    const auto            file = folder / "trials.csv", away = folder / "away.csv";
+    TrialTable            table(file);
+    table.append(rowNumber(1));
+    const std::string whole = contentsOf(file);
+    std::filesystem::rename(file, away);
+    std::filesystem::create_symlink(away, file);
+    ASSERT_EQ(::lchown(file.c_str(), kStranger, kStranger), 0);
+    ASSERT_EQ(::chmod(folder.path().c_str(), 01777), 0);
+    const std::string said = refusalOf([&] { table.append(rowNumber(2)); });
+    EXPECT_TRUE(holds(said, {"trials.csv: cannot be written", "a link that another user put"})) << said;
+    EXPECT_EQ(contentsOf(away), whole);
+    EXPECT_EQ(table.rows().size(), 1u);
 }
 
 /// A limit on the sizes of files, as a full disk has it, while the object lives.
