@@ -16,7 +16,7 @@ struct HostKernels {
 #define PALPATE_FUSED_REALS(name, spirv, source, define, Push, buffers, shape)
 #include "compute_shaders/shared/plate_kernels.def"
     /// What only the host has: the exact correction at rims, see rim_kernels.cpp.
-    compute::HostKernel rimFactor, rimFirst, rimLast, rimStart_f32, rimStart_f64;
+    compute::HostKernel rimFactor, rimFirst, rimLast, rimSolve, rimStart_f32, rimStart_f64;
     /// And shells: see shell_kernels.cpp and shell_entry_kernels.cpp.
 #define PALPATE_SHELL(name) compute::HostKernel name;
 #define PALPATE_SHELL_FIELDS(name) compute::HostKernel name;

@@ -21,20 +21,6 @@ inline std::ptrdiff_t max(std::ptrdiff_t a, std::ptrdiff_t b)
     return a < b ? b : a;
 }
 
-template <class Real>
-Together<Real> eightOf(const Real* from)
-{
-    Together<Real> v;
-    __builtin_memcpy(&v, from, sizeof v);
-    return v;
-}
-
-template <class Real>
-void store(Real* to, const Together<Real>& v)
-{
-    __builtin_memcpy(to, &v, sizeof v);
-}
-
 /// Subtracts the columns before c from kVectors vectors of column c of a front.
 template <int kVectors, class Real>
 void subtractColumns(Real* front, int rows, int c, int before, int row)
@@ -88,6 +74,21 @@ bool eliminate(const RimFront& f, const Real* entries, Real* front, Real* invers
     return true;
 }
 
+/// Divides what B and the unit matrix are in column k by L', in kVectors vectors from a row on; later columns are done.
+template <int kVectors, class Real>
+void divideColumn(const RimFront& f, const Real* from, Real inverse, int k, int row, Real* columns)
+{
+    const std::ptrdiff_t rows = f.rows();
+    Real*                to   = columns + k * rows + row;
+    Together<Real>       sums[kVectors];
+    for (int v = 0; v < kVectors; ++v) sums[v] = eightOf(to + v * kLanes);
+    for (int m = k + 1; m < f.own; ++m) {
+        const Real* other = columns + m * rows + row;
+        for (int v = 0; v < kVectors; ++v) sums[v] -= from[m] * eightOf(other + v * kLanes);
+    }
+    for (int v = 0; v < kVectors; ++v) store(to + v * kLanes, inverse * sums[v]);
+}
+
 /// Writes B P^-1 and P^-1 from what eliminate() left.
 template <class Real>
 void keepColumns(const RimFront& f, const Real* front, const Real* inverse, Real* columns)
@@ -99,11 +100,9 @@ void keepColumns(const RimFront& f, const Real* front, const Real* inverse, Real
         Real*       to   = columns + std::ptrdiff_t(k) * rows;
         for (int r = 0; r < f.borderRows; ++r) to[r] = r < f.border ? from[f.own + r] : Real(0);
         for (int r = 0; r < f.ownRows; ++r) to[f.borderRows + r] = from[at.upper + r];
-        for (int r = 0; r < rows; r += kLanes) {
-            Together<Real> sum = eightOf(to + r);
-            for (int m = k + 1; m < f.own; ++m) sum -= from[m] * eightOf(columns + std::ptrdiff_t(m) * rows + r);
-            store(to + r, inverse[k] * sum);
-        }
+        int row = 0;
+        for (; row + 4 * kLanes <= rows; row += 4 * kLanes) divideColumn<4>(f, from, inverse[k], k, row, columns);
+        for (; row < rows; row += kLanes) divideColumn<1>(f, from, inverse[k], k, row, columns);
     }
     // Rounding must leave P^-1 symmetric, or the cycle would not be.
     for (int k = 0; k < f.own; ++k)
@@ -142,18 +141,18 @@ void extendAdd(const RimView& rim, const RimFront& from, const Real* left, const
 {
     const int  stride = from.borderRows, rows = Workplace(f).rows;
     const int* border = rim.borders + from.borderAt;
-    for (int n = 0; n < from.border; ++n)
+    int* const ends   = local + rim.mostRows; // of runs of neighbours
+    for (int n = from.border - 1; n >= 0; --n) {
         local[n] = border[n] < f.first + f.own ? border[n] - f.first : localOf[border[n]];
+        ends[n]  = n + 1 < from.border && local[n + 1] == local[n] + 1 ? ends[n + 1] : n + 1;
+    }
     for (int c = 0; c < from.border; ++c) {
         Real*       column = front + std::ptrdiff_t(local[c]) * rows;
         const Real* own    = left + std::ptrdiff_t(c) * stride;
-        for (int n = c; n < from.border;) {
-            int run = n + 1;
-            while (run < from.border && local[run] == local[run - 1] + 1) ++run;
+        for (int n = c; n < from.border; n = ends[n]) {
             Real* to = column + local[n];
 #pragma GCC ivdep
-            for (int m = n; m < run; ++m) to[m - n] += own[m];
-            n = run;
+            for (int m = n; m < ends[n]; ++m) to[m - n] += own[m];
         }
     }
 }
@@ -210,7 +209,7 @@ bool factorRim(const PlateLevel& g, const float* D, const RimView& rim)
     Real* const                       entries = listed.of(std::ptrdiff_t(rim.unknowns) * kSlots);
     Real* const                       front   = fronts.of(2 * std::ptrdiff_t(rim.mostRows) * rim.mostRows);
     Real* const                       inverse = inverses.of(rim.mostRows);
-    int* const                        localOf = locals.of(std::ptrdiff_t(rim.unknowns) + rim.mostRows);
+    int* const                        localOf = locals.of(std::ptrdiff_t(rim.unknowns) + 2 * rim.mostRows);
     Real* const                       stack   = stacked.of(stackOf(rim));
     rimEntries(g, D, rim, entries);
 
@@ -317,11 +316,14 @@ void backwardFront(const RimFront& f, const Real* columns, const Together<Real>*
 }
 
 /// Solves for all unknowns x in place.
+/// \param needed  by front: those that have a force, and all that hold their borders; the others' x mean nothing.
+///                Null: all fronts
 template <class Real, class At>
-void solveRim(const RimView& rim, At* x, At* y)
+void solveRim(const RimView& rim, At* x, At* y, const std::uint8_t* needed = nullptr)
 {
     const auto* all = static_cast<const Real*>(rim.columns);
     for (int n = 0; n < rim.frontCount; ++n) {
+        if (needed && !needed[n]) continue;
         const RimFront& f      = rim.fronts[n];
         const int*      border = rim.borders + f.borderAt;
         At* const       own    = y + f.borderRows;
@@ -331,6 +333,7 @@ void solveRim(const RimView& rim, At* x, At* y)
         for (int m = 0; m < f.border; ++m) x[border[m]] = y[m];
     }
     for (int n = rim.frontCount - 1; n >= 0; --n) {
+        if (needed && !needed[n]) continue;
         const RimFront& f      = rim.fronts[n];
         const int*      border = rim.borders + f.borderAt;
         At* const       own    = y + f.borderRows;
@@ -413,6 +416,14 @@ void rimStartOf(const HostDispatch& d)
     }
 }
 
+template <class At>
+void rimSolveOf(const HostDispatch& d)
+{
+    static thread_local Scratch<At> scratch;
+    const RimView&                  rim = *bound<const RimView>(d, 0);
+    solveRim<double>(rim, bound<At>(d, 1), scratch.of(rim.mostRows), bound<const std::uint8_t>(d, 2));
+}
+
 } // namespace
 
 void rimFactor(const HostDispatch& d)
@@ -426,5 +437,6 @@ void rimFactor(const HostDispatch& d)
 PALPATE_ALONE_AND_TOGETHER(rimFirst, float)
 PALPATE_ALONE_AND_TOGETHER(rimLast, float)
 PALPATE_REALS_ALONE_AND_TOGETHER(rimStart)
+PALPATE_ALONE_AND_TOGETHER(rimSolve, double)
 
 } // namespace palp::PALPATE_ISA

@@ -15,24 +15,6 @@ namespace {
 
 constexpr int kLanes = kLoadsTogether;
 
-template <class Real>
-[[gnu::always_inline]] inline Together<Real> eightOf(const Real* from)
-{
-    using Eight = Together<Real>; // by its vectors: of a copy of bytes GCC makes halves, which AVX2 then waits for
-    Eight v;
-    for (int n = 0; n < Eight::kParts; ++n)
-        v.parts[n] = *reinterpret_cast<const typename Eight::Vector*>(from + std::ptrdiff_t(n) * Eight::kLanes);
-    return v;
-}
-
-template <class Real>
-[[gnu::always_inline]] inline void store(Real* to, const Together<Real>& v)
-{
-    using Eight = Together<Real>;
-    for (int n = 0; n < Eight::kParts; ++n)
-        *reinterpret_cast<typename Eight::Vector*>(to + std::ptrdiff_t(n) * Eight::kLanes) = v.parts[n];
-}
-
 /// Eight numbers in the precision of the arithmetic.
 template <class Real, class Stored>
 [[gnu::always_inline]] inline Together<Real> read(const Stored* from)

@@ -20,6 +20,7 @@ namespace palp::PALPATE_ISA {
 void rimFactor(const compute::HostDispatch& d);
 void rimFirst(const compute::HostDispatch& d);
 void rimLast(const compute::HostDispatch& d);
+void rimSolve(const compute::HostDispatch& d);
 void rimStart_f32(const compute::HostDispatch& d);
 void rimStart_f64(const compute::HostDispatch& d);
 #define PALPATE_SHELL(name) void name(const compute::HostDispatch& d);
@@ -40,6 +41,7 @@ constexpr HostKernels kTable{
     .rimFactor    = &rimFactor,
     .rimFirst     = &rimFirst,
     .rimLast      = &rimLast,
+    .rimSolve     = &rimSolve,
     .rimStart_f32 = &rimStart_f32,
     .rimStart_f64 = &rimStart_f64,
 #define PALPATE_SHELL(name) .name = &name,
@@ -78,6 +80,7 @@ constexpr HostKernels kTogether = [] {
     PALPATE_REALS_TOGETHER(footprints)
     PALPATE_TOGETHER(rimFirst)
     PALPATE_TOGETHER(rimLast)
+    PALPATE_TOGETHER(rimSolve)
     PALPATE_REALS_TOGETHER(rimStart)
 #define PALPATE_SHELL(name)
 #define PALPATE_SHELL_FIELDS(name) PALPATE_TOGETHER(name)

@@ -63,6 +63,25 @@ struct Together {
 #undef PALPATE_BY_PARTS
 };
 
+/// Reads and writes eight numbers that follow each other.
+// By registers: of a copy of bytes GCC makes halves of one, for which AVX2 then waits.
+template <class Real>
+[[gnu::always_inline]] inline Together<Real> eightOf(const Real* from)
+{
+    using Eight = Together<Real>;
+    Eight v;
+    for (int n = 0; n < Eight::kParts; ++n)
+        v.parts[n] = *reinterpret_cast<const typename Eight::Vector*>(from + std::ptrdiff_t(n) * Eight::kLanes);
+    return v;
+}
+template <class Real>
+[[gnu::always_inline]] inline void store(Real* to, const Together<Real>& v)
+{
+    using Eight = Together<Real>;
+    for (int n = 0; n < Eight::kParts; ++n)
+        *reinterpret_cast<typename Eight::Vector*>(to + std::ptrdiff_t(n) * Eight::kLanes) = v.parts[n];
+}
+
 template <class At>
 struct NodeOf {
     using Number                = At;

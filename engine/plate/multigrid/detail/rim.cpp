@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <limits>
 
 #include "compute_shaders/shared/tile_layout.h"
+#include "engine/core/contract.h"
 #include "engine/plate/multigrid/detail/grid_hierarchy.h"
 
 namespace palp {
@@ -42,13 +44,27 @@ bool isHeld(const shared::PlateLevel& g, int i, int j)
 bool Rim::divide(const shared::PlateLevel& level, std::span<const float> rigidity, const std::uint32_t* jumpTiles,
                  double mostWork)
 {
-    level_    = level;
-    mostWork_ = mostWork;
+    level_ = level;
     findNodes(level, rigidity, jumpTiles);
     if (unknowns() > kSmall && kLeastWork * unknowns() > mostWork) return false;
-    listTiles(level);
-    numbers_.assign(nodesOf(level), -1);
-    seen_.assign(nodesOf(level), -1);
+    return divideFound(mostWork);
+}
+
+void Rim::divideAll(const shared::PlateLevel& level)
+{
+    level_ = level;
+    isIn_.assign(nodesOf(level), 1);
+    listNodes();
+    const bool isDivided = divideFound(std::numeric_limits<double>::infinity());
+    PALP_EXPECT(isDivided, "the halves of a grid are as deep as their number's logarithm");
+}
+
+bool Rim::divideFound(double mostWork)
+{
+    mostWork_ = mostWork;
+    listTiles(level_);
+    numbers_.assign(nodesOf(level_), -1);
+    seen_.assign(nodesOf(level_), -1);
     fronts_.clear();
     borders_.clear();
     open_.clear();
@@ -78,10 +94,16 @@ void Rim::findNodes(const shared::PlateLevel& g, std::span<const float> rigidity
                     std::fill_n(isIn_.begin() + std::ptrdiff_t(a) * nodes + from, to - from + 1, std::uint8_t(1));
             }
     }
+    listNodes();
+}
+
+void Rim::listNodes()
+{
+    const int nodes = level_.cellsZ + 1;
     nodes_.clear();
-    for (int i = 0; i <= g.cellsX; ++i)
-        for (int j = 0; j <= g.cellsZ; ++j)
-            if (isIn_[std::size_t(i * nodes + j)] && !isHeld(g, i, j)) nodes_.push_back(i * nodes + j);
+    for (int i = 0; i <= level_.cellsX; ++i)
+        for (int j = 0; j <= level_.cellsZ; ++j)
+            if (isIn_[std::size_t(i * nodes + j)] && !isHeld(level_, i, j)) nodes_.push_back(i * nodes + j);
 }
 
 void Rim::listTiles(const shared::PlateLevel& g)

@@ -23,6 +23,9 @@ public:
     [[nodiscard]] bool divide(const shared::PlateLevel& level, std::span<const float> rigidity,
                               const std::uint32_t* jumpTiles, double mostWork);
 
+    /// Takes all nodes of a level that move, and divides them.
+    void divideAll(const shared::PlateLevel& level);
+
     /// Makes room for a factor.
     /// \return what the host's kernels need, valid until the next call
     [[nodiscard]] const RimView& prepare(bool doubles);
@@ -31,6 +34,8 @@ public:
     [[nodiscard]] int    unknowns() const noexcept { return int(nodes_.size()); }
 
 private:
+    [[nodiscard]] bool divideFound(double mostWork);
+    void               listNodes(); ///< those that isIn_ has and that move
     void findNodes(const shared::PlateLevel& level, std::span<const float> rigidity, const std::uint32_t* jumpTiles);
     void listTiles(const shared::PlateLevel& level);
     /// Divides nodes_[first, end) until halves are small: the nodes of a strip come after those of its halves.
