@@ -15,6 +15,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/plate/detail/direct_plate.h"
 #include "engine/plate/detail/hard_plates.h"
 #include "engine/plate/detail/memory_shortage.h"
 #include "engine/plate/detail/rigidity_unit.h"
@@ -189,6 +190,8 @@ struct PlateSolver::Multigrid {
     std::list<PreparedShell>    shells;            ///< the last ones of usual size, the newest first
     Prepared                    loads, footprints; ///< footprints: whose works are wanted alone
     Eights                      inFloats{Precision::floatGradients}, inDoubles{Precision::best};
+    std::optional<DirectPlate>  direct; ///< once it pays
+    int                         directsMade = 0;
     MemoryShortage              shortage; ///< of memory for fields of all loads together, in numbers of one
 
     Multigrid(const compute::ContextSettings& settings, SoftwareBits bits)
@@ -228,7 +231,7 @@ struct PlateSolver::Multigrid {
 
     [[nodiscard]] int memories() const
     {
-        return loads.made + footprints.made + inFloats.prepared.made + inDoubles.prepared.made;
+        return loads.made + footprints.made + inFloats.prepared.made + inDoubles.prepared.made + directsMade;
     }
 
     [[nodiscard]] bool isHost() const { return context.processor().kind == compute::ProcessorKind::host; }
@@ -369,6 +372,8 @@ private:
     [[nodiscard]] FootprintSolution solveByEights(const Plate& wanted, std::span<const Footprint> given,
                                                   std::size_t whole, double tolerance, double drawn)
     {
+        if (DirectPlate::pays(wanted, given.size()))
+            if (auto solution = solveDirectly(wanted, given, whole)) return std::move(*solution);
         FootprintSolution solution;
         solution.responses.resize(given.size());
         const auto [alone, setUp] = prepareFootprints(wanted, tolerance, drawn, 1);
@@ -389,6 +394,18 @@ private:
             }
         }
         return solution;
+    }
+
+    [[nodiscard]] std::optional<FootprintSolution> solveDirectly(const Plate& wanted, std::span<const Footprint> given,
+                                                                 std::size_t whole)
+    {
+        if (whyUnsolvable(wanted)) return std::nullopt; // multigrid says so
+        if (!direct || !direct->suits(wanted)) {
+            direct.reset(); // its memory goes before the next one's comes
+            direct.emplace(wanted);
+            ++directsMade;
+        }
+        return direct->solve(wanted, given, whole);
     }
 
     /// Makes a solver ready for footprints: the one for loads where a deflection is wanted more exactly than works ask
@@ -521,16 +538,16 @@ PlateSolver::Multigrid& PlateSolver::host()
     return *host_;
 }
 
-PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double tolerance)
+PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double tolerance, std::size_t footprints)
 {
     if (plate.grid.nodes() > learned_->shortage.most()) {
         note_ = learned_->shortageNote;
         return host();
     }
-    if (processor_->likeTheHost && !processor_->isHost() && mayHaveRims(plate)) {
+    if (processor_->likeTheHost && !processor_->isHost() &&
+        (mayHaveRims(plate) || DirectPlate::pays(plate, footprints))) {
         note_ = processor_->context.processor().name +
-                " does not solve rims of inclusions exactly, as the host may from a contrast of " +
-                formatNumber(MultigridPlateSolver::kRimContrast) + " on";
+                " does not solve for inclusions exactly, as the host may where the rigidity jumps";
         return host();
     }
     if (processor_->reaches(tolerance)) return *processor_;
@@ -540,7 +557,8 @@ PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double toleranc
 }
 
 template <class Answer, class Solve>
-std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solve& solve)
+std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solve& solve,
+                                               std::size_t footprints)
 {
     if (!processor_) return std::nullopt;
     const bool orByReference = fitsReference(plate.grid);
@@ -550,7 +568,7 @@ std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolera
     }
     std::optional<Answer> answer;
     std::exception_ptr    broken;
-    for (Multigrid* by = &bestFor(plate, tolerance); by;) {
+    for (Multigrid* by = &bestFor(plate, tolerance, footprints); by;) {
         const bool last = by->isHost();
         bool       sure = last; // that the host does no better
         try {
@@ -635,7 +653,7 @@ FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<con
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     auto answer = byMultigrid<FootprintSolution>(
-        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance, drawn); });
+        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance, drawn); }, loads.size());
     if (!answer) answer = byReference(plate, loads, whole, tolerance);
     countTakeover(answer->whole.report.solver);
     return std::move(*answer);

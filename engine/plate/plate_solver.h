@@ -22,8 +22,8 @@ struct ContextSettings;
 /// The way in which Vulkan in software solves a plate.
 enum class SoftwareBits {
     itsOwn,   ///< the way that is fastest there
-    ofTheHost ///< the host's way, with the same bits as the host: for replays. From MultigridPlateSolver::kRimContrast on
-              ///< the host itself takes over, because it may solve for rims exactly, which has no shader
+    ofTheHost ///< the host's way, with the same bits as the host: for replays. Where the host may solve for rims, or
+              ///< for many footprints, by a factor, which has no shader, it takes over itself
 };
 
 /// What footprints on one plate feel.
@@ -95,7 +95,9 @@ public:
     ///
     /// A work is of the second order in the error of its answer: loads are solved to the square root of the tolerance,
     /// at most 1e-2, see MultigridPlateSolver::solveFootprints(). On the host they are solved by eights, in floats, and
-    /// the one whose deflection is wanted in doubles; on a GPU all in one batch.
+    /// the one whose deflection is wanted in doubles; on a GPU all in one batch. Many of them on a small plate whose
+    /// rigidity jumps are solved by a factor of its matrix on the host, to what doubles and a rounded rigidity give,
+    /// with 0 iterations.
     /// \param whole      index of that load
     /// \param tolerance  of works, relative [1]
     /// \param drawn      of the deflection, relative in the energy norm [1]: less than works ask for takes more steps
@@ -147,12 +149,14 @@ private:
 
     [[nodiscard]] std::unique_ptr<Multigrid> makeHost() const;
     [[nodiscard]] Multigrid&                 host(); ///< the host's multigrid, which takes over; made when first needed
-    [[nodiscard]] Multigrid&                 bestFor(const Plate& plate, double tolerance);
+    [[nodiscard]] Multigrid&                 bestFor(const Plate& plate, double tolerance, std::size_t footprints);
 
     /// Calls solve(multigrid) on the processor and, where that fails, on the host.
+    /// \param footprints  that are solved for together
     /// \return nothing if the reference should solve the plate
     template <class Answer, class Solve>
-    [[nodiscard]] std::optional<Answer> byMultigrid(const Plate& plate, double tolerance, const Solve& solve);
+    [[nodiscard]] std::optional<Answer> byMultigrid(const Plate& plate, double tolerance, const Solve& solve,
+                                                    std::size_t footprints = 0);
 
     void takeHost();                               ///< for good
     void loseProcessor(const std::exception& why); ///< for good: the host is the processor then

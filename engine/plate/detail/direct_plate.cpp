@@ -1,0 +1,178 @@
+#include "engine/plate/detail/direct_plate.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "compute_shaders/shared/plate_push.h"
+#include "compute_shaders/shared/tile_layout.h"
+#include "engine/compute/processor_list.h"
+#include "engine/core/contract.h"
+#include "engine/core/extremes.h"
+#include "engine/plate/detail/hard_plates.h"
+#include "engine/plate/detail/rigidity_unit.h"
+#include "engine/plate/host/host_kernels.h"
+
+namespace palp {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Most that a step of refinement may change, in the energy norm [1]: works are wrong by the square of what it leaves.
+constexpr double kMostError = 1e-4;
+
+double millisecondsFrom(Clock::time_point began)
+{
+    return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
+}
+
+void run(compute::HostKernel kernel, const shared::PlateLevel& level, std::initializer_list<void*> buffers)
+{
+    const shared::LevelPush push{level};
+    kernel({buffers.begin(), &push, nullptr, {}, {}});
+}
+
+} // namespace
+
+bool DirectPlate::pays(const Plate& plate, std::size_t footprints)
+{
+    // Footprints from which it pays at 65 x 65 nodes, by the contrast of a rigidity that jumps; a factor grows faster
+    // with the nodes than the rest does.
+    constexpr double kUsual = 24, kStrong = 6, kStrongContrast = 3000, kLeastContrast = 30, kNodes = 65.0 * 65.0;
+    const double     least = double(plate.grid.nodes()) / kNodes;
+    if (double(footprints) < kStrong * least) return false;
+    const double contrast = contrastOf(plate);
+    return double(footprints) >= (contrast > kStrongContrast ? kStrong : kUsual) * least &&
+           contrast >= kLeastContrast && largestJump(plate) > double(shared::kJump);
+}
+
+DirectPlate::DirectPlate(const Plate& plate)
+    : plate_(plate), unit_(rigidityUnit(extremesOf(plate.rigidity.values()).most)), grid_(gridHierarchy(plate, unit_))
+{
+    plate_.rigidity = {};
+    all_.divideAll(grid_.levels.front().plate);
+    view_ = all_.prepare(true);
+    frontOf_.resize(std::size_t(view_.unknowns));
+    for (int n = 0; n < view_.frontCount; ++n)
+        std::fill_n(frontOf_.begin() + view_.fronts[n].first, view_.fronts[n].own, n);
+    numbers_.resize(std::size_t(view_.unknowns) * kLoadsTogether);
+    needed_.resize(std::size_t(view_.frontCount));
+}
+
+bool DirectPlate::suits(const Plate& plate) const
+{
+    return plate.grid == plate_.grid && plate.edges == plate_.edges && plate.poissonRatio == plate_.poissonRatio &&
+           plate.foundation == plate_.foundation &&
+           plate.foundationShape.values().size() == plate_.foundationShape.values().size() &&
+           isUnitOf(unit_, extremesOf(plate.rigidity.values()));
+}
+
+std::optional<FootprintSolution> DirectPlate::solve(const Plate& plate, std::span<const Footprint> footprints,
+                                                    std::size_t whole)
+{
+    const auto began = Clock::now();
+    if (!factor(plate)) return std::nullopt;
+    const double      setUp = millisecondsFrom(began);
+    FootprintSolution solution;
+    solution.whole = solveWhole(plate, footprints[whole]);
+    solution.responses.resize(footprints.size());
+    solution.responses[whole] = responseOf(footprints[whole], solution.whole.deflection);
+
+    std::vector<std::size_t> others;
+    for (std::size_t n = 0; n < footprints.size(); ++n)
+        if (n != whole) others.push_back(n);
+    for (std::span<const std::size_t> left = others; !left.empty();) {
+        const auto eight = left.first(std::min<std::size_t>(kLoadsTogether, left.size()));
+        left             = left.subspan(eight.size());
+        solveEight(footprints, eight, solution.responses);
+    }
+    solution.whole.report.setUpMilliseconds = setUp;
+    solution.whole.report.milliseconds      = millisecondsFrom(began) - setUp;
+    const bool finite                       = std::ranges::all_of(solution.responses, [](const FootprintResponse& of) {
+        return std::isfinite(of.work) && std::isfinite(of.changeX) && std::isfinite(of.changeZ);
+    });
+    return finite && solution.whole.report.converged ? std::optional(std::move(solution)) : std::nullopt;
+}
+
+bool DirectPlate::factor(const Plate& plate)
+{
+    const std::size_t nodes = plate.grid.nodes();
+    const auto&       shape = plate.foundationShape.values();
+    rigidity_.resize(nodes + shape.size());
+    inRigidityUnits(plate.rigidity.values(), unit_, std::span(rigidity_).first(nodes));
+    std::ranges::transform(shape, rigidity_.begin() + std::ptrdiff_t(nodes), [](double s) { return float(s); });
+    std::uint32_t lost = 1;
+    run(hostVariant().kernels->rimFactor, grid_.levels.front().plate, {&view_, rigidity_.data(), &lost});
+    return lost == 0;
+}
+
+PlateSolution DirectPlate::solveWhole(const Plate& plate, const Footprint& footprint)
+{
+    const shared::PlateLevel& level   = grid_.levels.front().plate;
+    const HostKernels&        kernels = *hostVariant().kernels;
+    const std::size_t         nodes   = plate.grid.nodes();
+    std::vector<double>       left(nodes, 0.0), x(std::size_t(view_.unknowns));
+    std::vector<double>       sum(nodes + 2, 0.0), resists(nodes); // rows of the operator may read beside a field
+    double* const             w = sum.data() + 1;
+    for (const Footprint::Part& part : footprint.parts) left[part.node] = part.force;
+    const auto force = left;
+    double     gain[2]{}; // squared errors that a solve takes away, in the energy norm
+    for (double& squared : gain) {
+        for (std::size_t n = 0; n < x.size(); ++n) x[n] = left[std::size_t(view_.nodes[n])];
+        run(kernels.rimSolve, level, {&view_, x.data(), nullptr});
+        for (std::size_t n = 0; n < x.size(); ++n) {
+            squared += x[n] * left[std::size_t(view_.nodes[n])];
+            w[view_.nodes[n]] += x[n];
+        }
+        run(kernels.apply_f64, level, {rigidity_.data(), w, resists.data()});
+        for (std::size_t n = 0; n < nodes; ++n) left[n] = force[n] - resists[n];
+    }
+
+    constexpr double kRounding = 1e-7; // of the rigidity in floats [1]
+    PlateSolution    solution;
+    solution.deflection = NodeField(plate.grid);
+    for (std::size_t n = 0; n < nodes; ++n) solution.deflection.values()[n] = w[n] / grid_.stiffness;
+    solution.report.solver        = compute::kHostProcessor;
+    solution.report.iterations    = 0;
+    const double error            = gain[0] > 0 ? std::sqrt(std::max(gain[1], 0.0) / gain[0]) : 0;
+    solution.report.errorEstimate = std::hypot(error, kRounding);
+    solution.report.converged     = error < kMostError;
+    return solution;
+}
+
+void DirectPlate::solveEight(std::span<const Footprint> footprints, std::span<const std::size_t> which,
+                             std::vector<FootprintResponse>& responses)
+{
+    findNeeded(footprints, which);
+    std::ranges::fill(numbers_, 0.0);
+    const auto place = [&](const Footprint::Part& part) { return std::ptrdiff_t(view_.numbers[part.node]); };
+    for (std::size_t n = 0; n < which.size(); ++n)
+        for (const Footprint::Part& part : footprints[which[n]].parts)
+            if (place(part) >= 0) numbers_[std::size_t(place(part)) * kLoadsTogether + n] = part.force;
+    run(hostVariant().together->rimSolve, grid_.levels.front().plate, {&view_, numbers_.data(), needed_.data()});
+    for (std::size_t n = 0; n < which.size(); ++n)
+        for (const Footprint::Part& part : footprints[which[n]].parts) {
+            if (place(part) < 0) continue;
+            const double       w  = numbers_[std::size_t(place(part)) * kLoadsTogether + n] / grid_.stiffness;
+            FootprintResponse& of = responses[which[n]];
+            of.work += part.force * w;
+            of.changeX += part.changeX * w;
+            of.changeZ += part.changeZ * w;
+        }
+}
+
+void DirectPlate::findNeeded(std::span<const Footprint> footprints, std::span<const std::size_t> which)
+{
+    std::ranges::fill(needed_, std::uint8_t(0));
+    for (const std::size_t n : which)
+        for (const Footprint::Part& part : footprints[n].parts)
+            if (const int unknown = view_.numbers[part.node]; unknown >= 0) needed_[frontOf_[std::size_t(unknown)]] = 1;
+    for (int n = 0; n < view_.frontCount; ++n) {
+        if (!needed_[std::size_t(n)]) continue;
+        const RimFront& front = view_.fronts[n];
+        for (int m = 0; m < front.border; ++m)
+            needed_[std::size_t(frontOf_[std::size_t(view_.borders[front.borderAt + m])])] = 1;
+    }
+}
+
+} // namespace palp
