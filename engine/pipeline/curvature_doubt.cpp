@@ -12,6 +12,7 @@
 
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/curvature_sites.h"
+#include "engine/pipeline/patch_warnings.h"
 
 namespace palp {
 namespace {
@@ -54,6 +55,18 @@ bool comesNear(const SurfaceMesh& mesh, const Triangle& face, const glm::dvec3& 
     return glm::distance(glm::clamp(place, low, high), place) < reach;
 }
 
+/// Returns the larger curvature of the surface at a plate's contact [1/m]; 0 of a shell, or where it is not known.
+double bendOfPlate(const SoftObject& object, const Patch& patch, const PatchSettings& settings)
+{
+    constexpr double kPart = 0.25; // of the window, as far as a dent's middle reaches [1]
+    if (settings.theory != Theory::plate || settings.neighbourhood != Neighbourhood::surface || !patch.deformed())
+        return 0;
+    const double radius = std::max(kSpacings * patch.spacing,
+                                   std::max(quietFitRadius(patch.noise, patch.spacing), kPart * bentSize(patch)));
+    const auto   fit    = faceCurvature(object, patch.chart.origin, patch.chart.frame.normal, radius);
+    return fit ? principalOf(*fit).first : 0;
+}
+
 } // namespace
 
 double fitBias(double radius, double larger, double smaller) noexcept
@@ -88,9 +101,14 @@ double facetWidth(const SurfaceMesh& mesh, const glm::dvec3& place, double reach
     return all > 0 ? sum / all : 0;
 }
 
-std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& patch)
+std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& patch, const PatchSettings& settings)
 {
     std::vector<std::string> said;
+    if (const double bend = bendOfPlate(object, patch, settings); bend != 0) {
+        const auto leftOut = [&](double k) { return membraneLeftOut(patch, settings, object.material(), k); };
+        if (leftOut(bend) > kMembraneFelt && !(leftOut(patch.sphere.fit.curvature) > kMembraneFelt))
+            said.push_back(bentFlat(bend));
+    }
     if (!patch.curvature) return said;
     const auto [larger, smaller] = patch.principal;
     const double radius          = patch.curvature->radius;

@@ -27,11 +27,13 @@ inline constexpr double kMostFitBias = 0.05;
 [[nodiscard]] double facetWidth(const SurfaceMesh& mesh, const glm::dvec3& place, double reach);
 
 /// Returns, in sentences, why the curvature that a patch bent with may be read wrong: points that are too far apart, or
-/// facets that are wider than its fits. Empty is good, and so is a plate.
+/// facets that are wider than its fits. Of a plate it says that the surface is curved where the fitted sphere, of which
+/// warnings() knows, is not: a saddle's has no curvature, and a tube's half of it. Empty is good.
 ///
 /// Measured on spheres and cylinders of facets: fits as wide as 1.15 facets and more are right to 5 %, of 0.9 off by
 /// -12 to 3 %, of 0.7 by -3 to 35 %, and of half of one by -73 to 63 %: they find a curvature of none on the facets.
-[[nodiscard]] std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& patch);
+[[nodiscard]] std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& patch,
+                                                       const PatchSettings& settings);
 
 /// Returns why the points of an object may be too far apart for its curvature, from places all over it; empty if fewer
 /// than a tenth of them are. Milliseconds, and longer on dense clouds.

@@ -835,14 +835,26 @@ std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& 
                                          PlateSolver& solver)
 {
     if (settings.theory != Theory::shell || !patch.deformed() || !patch.covered.values().empty()) return {};
-    PatchSettings held = settledFor(object, settings);
-    held.large         = Large::off;
-    const auto felt    = [&](Edge edge) {
+    constexpr double kWider = 1.25, kSofter = 0.98, kMostBare = 0.1; // [1]; of the nodes, for which there is no object
+    PatchSettings    held = settledFor(object, settings);
+    held.large            = Large::off;
+    const auto touch      = [&](Edge edge) {
         held.edges = {edge, edge, edge, edge};
-        if (held.edges == patch.plate.edges) return patch.feltStiffness;
-        return deform(object, patch.contact, held, solver, patch.chart.frame).feltStiffness;
+        return deform(object, patch.contact, held, solver, patch.chart.frame);
     };
-    return SupportRange{felt(Edge::supported), felt(Edge::clamped)};
+    const auto felt = [&](Edge edge) {
+        return patch.plate.edges == PlateEdges{edge, edge, edge, edge} ? patch.feltStiffness
+                                                                       : touch(edge).feltStiffness;
+    };
+    SupportRange range{felt(Edge::supported), felt(Edge::clamped), 0, held.window};
+    for (range.least = range.supported;; range.width = held.window) {
+        held.window *= kWider;
+        const Patch wider = touch(Edge::supported);
+        if (!wider.deformed() || !wider.flatBecause.empty() || !(wider.feltStiffness < kSofter * range.least) ||
+            wider.nodesWithoutPoint > kMostBare * double(wider.window.grid.nodes()))
+            return range;
+        range.least = wider.feltStiffness;
+    }
 }
 
 } // namespace palp

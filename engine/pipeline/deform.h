@@ -57,12 +57,14 @@ struct PatchWithTable {
 struct SupportRange {
     double supported = 0; ///< cut from a larger body: no deflection, and no strain along the edge
     double clamped   = 0; ///< held as firmly as can be
+    double least     = 0; ///< supported at the edge of a wider window, where that is softer: as far as the object goes
+    double width     = 0; ///< of that window [m]
 };
 
-/// Touches the same place with supported and with clamped edges on all sides; the window turns as it does for each of
-/// them. Where a surface is curved one way, or both ways against each other, a dent reaches as far as the object does,
-/// and its support decides within this range; where it bulges both
-/// ways and the window is some eight lengths wide, both are nearly alike.
+/// Touches the same place with supported and with clamped edges on all sides, and with supported ones of wider windows;
+/// each window turns as it does for its edges. Where a surface is curved one way, or both ways against each other, a
+/// dent reaches as far as the object does, and its support decides between `least` and `clamped`; where it bulges both
+/// ways and the window is some eight lengths wide, all are nearly alike.
 /// \return empty if the settings ask for no shell, or the window spans an object, which has supports of its own
 /// \param object, settings  that the patch was made with
 [[nodiscard]] std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& patch,

@@ -88,28 +88,15 @@ std::string widerWindow(double width, const PatchSettings& settings)
                                      : "");
 }
 
-/// Returns the stiffness of the membrane that a plate leaves out, over what else resists the slowest wave in the
-/// window: as the sphere that was fitted to the surface has it [1].
-double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material)
-{
-    const double k = patch.sphere.fit.curvature, h = patch.thickness, nu = material.poissonRatio;
-    const double D    = geometricMean(patch.plate.rigidity.values());
-    const double wave = 4 * std::pow(std::numbers::pi / bentSize(patch), 4);
-    return 12 * (1 - nu * nu) * D * k * k / (h * h) / (wave * D + settings.foundation);
-}
-
 /// Adds what limits a shell, or what a plate that is no shell leaves out.
 void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings,
                   const Material& material)
 {
-    constexpr double kFolded = 0.5, kNearly = 0.95, kFelt = 0.2, kHardly = 0.02; // [1]
-    constexpr double kShown = 0.005; // half of what is printed of a sag is no excess [1]
+    constexpr double kFolded = 0.5, kNearly = 0.95, kHardly = 0.02; // [1]
+    constexpr double kShown = 0.005;                                // half of what is printed of a sag is no excess [1]
     if (settings.theory == Theory::plate && settings.neighbourhood == Neighbourhood::surface &&
-        membraneLeftOut(patch, settings, material) > kFelt)
-        result.push_back(
-            "the surface is curved, with a radius of " + formatQuantity(1 / patch.sphere.fit.curvature, "m") +
-            ", and bent as if it were flat: the forces within it are left out, and may be felt; set theory "
-            "shell, unless it is a thin sheet between two faces that bulge apart");
+        membraneLeftOut(patch, settings, material, patch.sphere.fit.curvature) > kMembraneFelt)
+        result.push_back(bentFlat(patch.sphere.fit.curvature));
     if (!patch.flatBecause.empty())
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
     if (!patch.curvature) return;
@@ -153,7 +140,7 @@ void addThick(std::vector<std::string>& result, const Patch& patch)
 }
 
 /// Says where the deflection is beyond the theory: half the thickness, or twice it if large deflections are on.
-void addTooDeep(std::vector<std::string>& result, const Patch& patch, double deepest, double load)
+void addTooDeep(std::vector<std::string>& result, const Patch& patch, Large large, double deepest, double load)
 {
     const double most = patch.large ? patch.large->reach() : patch.thickness / 2;
     if (!(deepest > most)) return;
@@ -167,10 +154,28 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, double dee
             formatQuantity(patch.large->forceAt(most / (patch.large->tangent.front() * mostResponse(patch))), "N"));
     result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
                      formatQuantity(most, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
-                     formatQuantity(patch.stiffening > 0 ? law.force(less / patch.feltStiffness) : less, "N"));
+                     formatQuantity(patch.stiffening > 0 ? law.force(less / patch.feltStiffness) : less, "N") +
+                     (large == Large::off && deepest <= 2 * patch.thickness
+                          ? ", or set --large on, which holds to twice the thickness"
+                          : ""));
 }
 
 } // namespace
+
+double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material, double curvature)
+{
+    const double h = patch.thickness, nu = material.poissonRatio;
+    const double D    = geometricMean(patch.plate.rigidity.values());
+    const double wave = 4 * std::pow(std::numbers::pi / bentSize(patch), 4);
+    return 12 * (1 - nu * nu) * D * curvature * curvature / (h * h) / (wave * D + settings.foundation);
+}
+
+std::string bentFlat(double curvature)
+{
+    return "the surface is curved, with a radius of " + formatQuantity(1 / std::abs(curvature), "m") +
+           ", and bent as if it were flat: the forces within it are left out, and may be felt; set theory "
+           "shell, unless it is a thin sheet between two faces that bulge apart";
+}
 
 std::string unconvergedText(const Patch& patch)
 {
@@ -186,7 +191,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (!patch.report.converged) result.push_back(unconvergedText(patch));
     const double load    = pressOf(patch, material, std::abs(force)).load;
     const double deepest = load * mostResponse(patch);
-    addTooDeep(result, patch, deepest, load);
+    addTooDeep(result, patch, settings.large, deepest, load);
     addThick(result, patch);
     const bool   whole  = settings.windowOf == WindowOf::object;
     const double window = patch.window.grid.sizeX(); // [m]

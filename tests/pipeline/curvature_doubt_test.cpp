@@ -10,6 +10,7 @@
 
 #include "engine/cloud/mesh_points.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/patch_warnings.h"
 
 // Spheres and cylinders of a radius of 20 mm, whose curvature is 50 1/m.
 
@@ -46,12 +47,15 @@ SoftObject body(Shape shape, int count, bool random = false)
     return bodyOf(std::move(points));
 }
 
+const PatchSettings kShell{.window = 24e-3,
+                           .cells  = 32,
+                           .theory = Theory::shell,
+                           .edges  = {Edge::supported, Edge::supported, Edge::supported, Edge::supported}};
+
 Patch touched(const SoftObject& object, const glm::dvec3& from = {0, 0, 1})
 {
-    PatchSettings settings{.window = 24e-3, .cells = 32, .theory = Theory::shell};
-    settings.edges = {Edge::supported, Edge::supported, Edge::supported, Edge::supported};
     PlateSolver host("host");
-    return deform(object, touchAt(object, kRadius * from, from, 10e-3), settings, host);
+    return deform(object, touchAt(object, kRadius * from, from, 10e-3), kShell, host);
 }
 
 /// A cylinder of flat facets, or a box on whose top is a square of two triangles.
@@ -98,12 +102,12 @@ TEST(CurvatureDoubt, SparsePointsAreSaidAndThoseThatAreAskedForAreDenseEnough)
     for (const Shape shape : {Shape::sphere, Shape::cylinder}) {
         const bool       round  = shape == Shape::sphere;
         const SoftObject sparse = body(shape, round ? 600 : 1000), dense = body(shape, round ? 1300 : 1900);
-        const auto       said = curvatureDoubts(sparse, touched(sparse));
+        const auto       said = curvatureDoubts(sparse, touched(sparse), kShell);
         ASSERT_EQ(said.size(), 1u);
         EXPECT_NE(said[0].find("too strong, expected at most 5"), std::string::npos) << said[0];
         EXPECT_NE(said[0].find(round ? "take points at most 2.0" : "take points at most 2.6"), std::string::npos)
             << said[0];
-        EXPECT_EQ(curvatureDoubts(dense, touched(dense)).size(), 0u) << "1.97 and 2.57 mm apart";
+        EXPECT_EQ(curvatureDoubts(dense, touched(dense), kShell).size(), 0u) << "1.97 and 2.57 mm apart";
         EXPECT_EQ(sparseForCurvature(dense), "");
         EXPECT_NE(sparseForCurvature(sparse).find("points"), std::string::npos);
     }
@@ -113,7 +117,7 @@ TEST(CurvatureDoubt, FacetsWiderThanTheFitsAreSaid)
 {
     const auto doubts = [](int facets, const glm::dvec3& from) {
         const SoftObject object = meshed(prism(facets));
-        return curvatureDoubts(object, touched(object, from));
+        return curvatureDoubts(object, touched(object, from), kShell);
     };
     const glm::dvec3 onEdge(0, 0, 1), onFacet(0, std::sin(std::numbers::pi / 12), std::cos(std::numbers::pi / 12));
     for (const glm::dvec3& from : {onEdge, onFacet}) {
@@ -137,7 +141,33 @@ TEST(CurvatureDoubt, APlateHasNone)
     PatchSettings    settings{.window = 24e-3, .cells = 32};
     PlateSolver      host("host");
     const Patch patch = deform(object, touchAt(object, {0, 0, kRadius}, glm::dvec3(0, 0, 1), 10e-3), settings, host);
-    EXPECT_TRUE(curvatureDoubts(object, patch).empty());
+    EXPECT_TRUE(curvatureDoubts(object, patch, settings).empty());
+}
+
+/// Its fitted sphere is flat, and no warning of a plate knew of it.
+TEST(CurvatureDoubt, APlateOnASaddleIsToldThatItIsCurved)
+{
+    const auto surface = [](double bend) {
+        std::mt19937                           engine(5);
+        std::uniform_real_distribution<double> place(-30e-3, 30e-3);
+        std::vector<glm::dvec3>                points;
+        for (int n = 0; n < 10000; ++n) {
+            const double x = place(engine), y = place(engine);
+            points.emplace_back(x, y, bend / 2 * (x * x - y * y));
+        }
+        return bodyOf(std::move(points));
+    };
+    const PatchSettings settings{.window = 40e-3, .cells = 32};
+    PlateSolver         host("host");
+    for (const double bend : {20.0, 0.5}) {
+        const SoftObject object = surface(bend);
+        const Patch      patch  = deform(object, touchAt(object, {}, glm::dvec3(0, 0, 1), 10e-3), settings, host);
+        const auto       said   = curvatureDoubts(object, patch, settings);
+        EXPECT_EQ(said.size(), bend > 1 ? 1u : 0u);
+        for (const std::string& line : said) EXPECT_NE(line.find("bent as if it were flat"), std::string::npos) << line;
+        for (const std::string& line : warnings(patch, settings, 1e-3, object.material()))
+            EXPECT_EQ(line.find("bent as if it were flat"), std::string::npos) << "once is enough";
+    }
 }
 
 } // namespace

@@ -564,6 +564,8 @@ TEST(ShellPatch, EverySideOfTheMembraneIsHeldAsItsOwnSideOfTheWindow)
     EXPECT_EQ(stressEdgesFor({supported, free, clamped, free}), (PlateEdges{supported, clamped, free, clamped}));
     EXPECT_EQ(stressEdgesFor({free, clamped, supported, clamped}), (PlateEdges{clamped, free, supported, free}));
     EXPECT_EQ(stressEdgesFor({guided, clamped, supported, guided}), (PlateEdges{guided, free, supported, guided}));
+    EXPECT_EQ(stressEdgesFor({clamped, clamped, supported, clamped}), (PlateEdges{free, free, free, free}))
+        << "by one side alone it would turn about it";
 }
 
 TEST(ShellPatch, EdgesOfTheMembraneGoWithThoseOfTheWindow)

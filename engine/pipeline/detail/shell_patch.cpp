@@ -1,6 +1,7 @@
 #include "engine/pipeline/detail/shell_patch.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -176,7 +177,13 @@ PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
         if (edge == Edge::guided) return Edge::guided; // the stresses are symmetric too
         return edge == Edge::free ? Edge::clamped : edge == Edge::clamped ? Edge::free : Edge::supported;
     };
-    return {of(edges.x0), of(edges.x1), of(edges.z0), of(edges.z1)};
+    PlateEdges stress{of(edges.x0), of(edges.x1), of(edges.z0), of(edges.z1)};
+    // A stress function that one side alone holds, and not its slope, may turn about it.
+    const std::array sides{&stress.x0, &stress.x1, &stress.z0, &stress.z1};
+    const auto       one = std::ranges::find(sides, Edge::supported, [](const Edge* side) { return *side; });
+    if (one != sides.end() && std::ranges::count(sides, Edge::free, [](const Edge* side) { return *side; }) == 3)
+        **one = Edge::free;
+    return stress;
 }
 
 Shell shellOf(const Patch& patch)

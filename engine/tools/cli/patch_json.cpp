@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/pipeline/presets.h"
 #include "engine/pipeline/press.h"
@@ -71,7 +72,10 @@ Json shellJson(const SoftObject& object, const Patch& patch, const PatchSettings
 {
     const auto range = supportRange(object, patch, settings, solver);
     if (!patch.curvature && !range) return nullptr;
-    const bool isEnded = patch.curvature && std::isfinite(patch.shellLength);
+    const double below = settings.foundation / rigidityAtContact(patch);
+    const bool   isEnded =
+        patch.curvature &&
+        std::isfinite(dentReach(patch.principal.first, patch.principal.second, object.material(), below).length);
     return {{"curvatures", {patch.principal.first, patch.principal.second}},
             {"flat", !patch.curvature},
             {"flat_because", patch.flatBecause.empty() ? Json() : Json(patch.flatBecause)},
@@ -81,6 +85,8 @@ Json shellJson(const SoftObject& object, const Patch& patch, const PatchSettings
             {"body_compliance", bodyFelt(patch)},
             {"felt_stiffness_supported", orNull(range ? std::optional(range->supported) : std::nullopt)},
             {"felt_stiffness_clamped", orNull(range ? std::optional(range->clamped) : std::nullopt)},
+            {"felt_stiffness_least", orNull(range ? std::optional(range->least) : std::nullopt)},
+            {"least_in_window", orNull(range ? std::optional(range->width) : std::nullopt)},
             {"edges", edgesText(settings.edges)}};
 }
 

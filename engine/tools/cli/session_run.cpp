@@ -38,7 +38,7 @@ std::vector<std::string> warningsOf(const Scene& scene, const SoftObject& object
         PlateSolver              host("host");
         const Patch              patch = deform(object, {place.point, place.outward}, scene.patch, host);
         std::vector<std::string> said  = warnings(patch, scene.patch, 0, scene.material);
-        for (std::string& line : curvatureDoubts(object, patch)) said.push_back(std::move(line));
+        for (std::string& line : curvatureDoubts(object, patch, scene.patch)) said.push_back(std::move(line));
         return said;
     } catch (const Error& error) { // a hand from a file may work elsewhere
         return {std::string("nothing can be felt at the scene's place: ") + error.what()};

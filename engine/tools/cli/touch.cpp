@@ -107,23 +107,30 @@ void printWindow(const nlohmann::json& window)
 
 void printShell(const nlohmann::json& shell, double compliance)
 {
-    const auto quantity = [](const nlohmann::json& number, const char* unit) { return formatQuantity(number, unit); };
+    constexpr double kNoise = 1e-4; // what fits to points leave of no curvature [1]
+    const auto   quantity = [](const nlohmann::json& number, const char* unit) { return formatQuantity(number, unit); };
+    const double most = shell["curvatures"][0], least = shell["curvatures"][1];
     if (shell["flat"].get<bool>())
         std::printf("  shell              %s", shell["flat_because"].is_null()
                                                    ? "flat here, bent as a plate"
                                                    : "none, bent as a flat plate: see below");
     else
-        std::printf("  shell              curvatures %s and %s", quantity(shell["curvatures"][0], "1/m").c_str(),
-                    quantity(shell["curvatures"][1], "1/m").c_str());
+        std::printf("  shell              curvatures %s and %s", formatQuantity(most, "1/m").c_str(),
+                    formatQuantity(std::abs(least) < kNoise * std::abs(most) ? 0 : least, "1/m").c_str());
     if (!shell["length"].is_null())
         std::printf(", window %.1f lengths of %s", shell["window_lengths"].get<double>(),
                     quantity(shell["length"], "m").c_str());
-    if (!shell["felt_stiffness_supported"].is_null())
-        std::printf(", felt %s with supported and %s with clamped edges; the answer is that of the scene's: %s",
-                    quantity(shell["felt_stiffness_supported"], "N/m").c_str(),
-                    quantity(shell["felt_stiffness_clamped"], "N/m").c_str(),
-                    shell["edges"].get<std::string>().c_str());
     std::printf("\n");
+    if (!shell["felt_stiffness_supported"].is_null()) {
+        std::printf("  support range      felt %s with supported and %s with clamped edges",
+                    quantity(shell["felt_stiffness_supported"], "N/m").c_str(),
+                    quantity(shell["felt_stiffness_clamped"], "N/m").c_str());
+        if (shell["felt_stiffness_least"] < shell["felt_stiffness_supported"])
+            std::printf(", %s with supported edges of a window of %s",
+                        quantity(shell["felt_stiffness_least"], "N/m").c_str(),
+                        quantity(shell["least_in_window"], "m").c_str());
+        std::printf("; the answer is that of the scene's: %s\n", shell["edges"].get<std::string>().c_str());
+    }
     if (const double body = shell["body_compliance"]; body > 0)
         std::printf(
             "  body               gives way by %s of the compliance, as one that is held just below its widest\n",
@@ -279,7 +286,7 @@ void touch(const TouchOptions& options)
     refuseOverflow(report);
     report["window"]["chosen"] = why.empty() ? nlohmann::json(nullptr) : nlohmann::json(why);
     report["cloud"]            = cloudJson(options.source.name, object.cloud(), object.faces(), loaded.report);
-    for (std::string& line : curvatureDoubts(object, patch)) report["warnings"].push_back(std::move(line));
+    for (std::string& line : curvatureDoubts(object, patch, settings)) report["warnings"].push_back(std::move(line));
     for (std::string& line : cloudWarnings(scene, object.cloud(), loaded.report))
         report["warnings"].push_back(std::move(line));
     if (std::string doubt = placeDoubt(scene, patch); !doubt.empty()) report["warnings"].push_back(std::move(doubt));
