@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <iostream>
 #include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -49,19 +52,27 @@ bool isPly(const std::string& file)
     return !file.empty() && formatToRead(file).format == CloudFormat::ply;
 }
 
-/// What the strokes make: the stiffness, and how points stiffen.
+/// Numbers of the points beside their stiffness.
+struct PaintedField {
+    std::vector<double> values;            ///< empty: the source has none
+    bool                isPainted = false; ///< by a stroke
+    std::size_t         changed   = 0;     ///< points with another value
+};
+
+/// What the strokes make.
 struct Painted {
-    PointCloud          cloud;
-    std::vector<double> stiffening;        ///< [1/m]; empty: the source has none
-    bool                stiffens  = false; ///< a stroke has painted it
-    std::size_t         changed   = 0;     ///< points with another stiffness
-    std::size_t         stiffened = 0;     ///< points with another stiffening
+    PointCloud   cloud;
+    std::size_t  changed = 0; ///< points with another stiffness
+    PaintedField stiffening;  ///< [1/m]
+    PaintedField held;        ///< share that is held [1]
+
+    [[nodiscard]] bool hasNewFields() const { return stiffening.isPainted || held.isPainted; }
 };
 
 /// Returns true if the new file is the original with another stiffness.
 bool keepsOriginal(const PaintOptions& o, const Canvas& canvas, const Painted& painted)
 {
-    return isPly(canvas.file) && isPly(o.out) && canvas.loaded.report.scatteredPoints == 0 && !painted.stiffens;
+    return isPly(canvas.file) && isPly(o.out) && canvas.loaded.report.scatteredPoints == 0 && !painted.hasNewFields();
 }
 
 /// Writes the source's file with the new stiffness, or else a new file.
@@ -69,33 +80,45 @@ bool keepsOriginal(const PaintOptions& o, const Canvas& canvas, const Painted& p
 RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const Painted& painted)
 {
     if (keepsOriginal(o, canvas, painted)) return repaintPly(canvas.file, canvas.scene.reading, painted.cloud, o.out);
-    writeCloud(o.out, painted.cloud, fieldsBeside(canvas.loaded, painted.stiffening),
+    writeCloud(o.out, painted.cloud, fieldsBeside(canvas.loaded, painted.stiffening.values),
                {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
     return {propertyOf(painted.cloud.kind()), true};
 }
 
-std::vector<double> growthsOf(const LoadedCloud& loaded)
-{
-    std::vector<double> growths(loaded.cloud.size(), 1);
-    if (!loaded.stiffening.empty()) std::ranges::transform(loaded.stiffening, growths.begin(), growthOf);
-    return growths;
-}
+/// A field while it is painted, as numbers above zero, which a brush brings from one to another by equal factors.
+class FieldPainting {
+public:
+    using Map = double (*)(double) noexcept;
 
-Painted paintedBy(const StiffnessPainting& stiffness, const StiffnessPainting& growth, const LoadedCloud& loaded)
-{
-    Painted painted{.cloud = stiffness.cloud(), .stiffening = loaded.stiffening, .stiffens = growth.changed()};
-    for (std::size_t i = 0; i < loaded.cloud.size(); ++i)
-        painted.changed += painted.cloud.stiffness()[i] != loaded.cloud.stiffness()[i] ? 1 : 0;
-    if (!painted.stiffens) return painted;
-    painted.stiffening.resize(loaded.cloud.size());
-    const std::vector<double> before = growthsOf(loaded);
-    for (std::size_t i = 0; i < before.size(); ++i) {
-        if (growth.stiffness()[i] == before[i]) continue; // what was not painted keeps its bits
-        painted.stiffening[i] = stiffeningOf(growth.stiffness()[i]);
-        ++painted.stiffened;
+    FieldPainting(const SoftObject& object, std::span<const double> values, Map above, Map back)
+        : values_(values.begin(), values.end()), back_(back), before_(object.size(), 1)
+    {
+        std::ranges::transform(values_, before_.begin(), above);
+        shown_.emplace(object.repainted(before_));
+        painting_.emplace(*shown_);
     }
-    return painted;
-}
+
+    [[nodiscard]] StiffnessPainting& painting() noexcept { return *painting_; }
+    [[nodiscard]] PaintedField       result() const
+    {
+        PaintedField field{values_, painting_->changed()};
+        if (!field.isPainted) return field;
+        field.values.resize(before_.size());
+        for (std::size_t i = 0; i < before_.size(); ++i) {
+            if (painting_->stiffness()[i] == before_[i]) continue; // what was not painted keeps its bits
+            field.values[i] = back_(painting_->stiffness()[i]);
+            ++field.changed;
+        }
+        return field;
+    }
+
+private:
+    std::vector<double>              values_;
+    Map                              back_;
+    std::vector<double>              before_;
+    std::optional<SoftObject>        shown_;
+    std::optional<StiffnessPainting> painting_;
+};
 
 nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
 {
@@ -106,7 +129,8 @@ nlohmann::json jsonOf(const StrokeOrder& order, const StrokeReport& report)
             {"strength", order.strength},
             {"value", order.value ? nlohmann::json(*order.value) : nlohmann::json()},
             {"stiffening", order.stiffening ? nlohmann::json(*order.stiffening) : nlohmann::json()},
-            {"smooth", !order.value && !order.stiffening},
+            {"held", order.held ? nlohmann::json(*order.held) : nlohmann::json()},
+            {"smooth", !order.value && !order.stiffening && !order.held},
             {"dabs", report.dabs},
             {"points", report.points}};
 }
@@ -129,6 +153,7 @@ struct StrokeAccount {
                  counted(report.points, "point") + ", " +
                  (order.value        ? "towards " + formatQuantity(*order.value, unit)
                   : order.stiffening ? "stiffening towards " + formatQuantity(*order.stiffening, "1/m")
+                  : order.held       ? "held towards " + formatNumber(*order.held)
                                      : "smoothing") +
                  "\n";
     }
@@ -137,10 +162,14 @@ struct StrokeAccount {
 /// Says what a reader of the new file has to know.
 void addWarnings(Canvas& canvas, const Painted& painted, const RepaintedPly& written)
 {
-    if (painted.changed + painted.stiffened == 0) canvas.warnings.emplace_back("no stroke changed anything");
-    if (painted.stiffens && isPly(canvas.file))
+    if (painted.changed + painted.stiffening.changed + painted.held.changed == 0)
+        canvas.warnings.emplace_back("no stroke changed anything");
+    if (painted.hasNewFields() && isPly(canvas.file))
         canvas.warnings.emplace_back(
-            "a stroke of stiffening makes a new file: of the original's properties only stiffness and faces are kept");
+            "a stroke of stiffening or held makes a new file: of the original's properties only "
+            "those that Palpate knows and faces are kept");
+    if (painted.held.isPainted)
+        canvas.warnings.emplace_back("what is held counts where a scene says --held own and --window object");
     if (!written.appended && !canvas.scene.reading.stiffnessProperty.empty())
         canvas.warnings.push_back("the stiffness keeps its property: read it with --stiffness-property " +
                                   written.property + ", and without --stiffness-range");
@@ -157,7 +186,8 @@ void print(const PaintOptions& o, const Canvas& canvas, const Painted& painted, 
         std::cout << jsonText(nlohmann::json{{"name", o.source.name},
                                              {"points", cloud.size()},
                                              {"changed_points", painted.changed},
-                                             {"stiffened_points", painted.stiffened},
+                                             {"stiffened_points", painted.stiffening.changed},
+                                             {"held_points", painted.held.changed},
                                              {"strokes", strokes.json},
                                              {"stiffness_unit", unitOf(cloud.kind())},
                                              {"stiffness_min", *least},
@@ -170,7 +200,10 @@ void print(const PaintOptions& o, const Canvas& canvas, const Painted& painted, 
         return;
     }
     std::cout << o.out << ": " << cloud.size() << " points, " << painted.changed << " with another stiffness"
-              << (painted.stiffens ? ", " + std::to_string(painted.stiffened) + " with another stiffening\n" : "\n")
+              << (painted.stiffening.isPainted
+                      ? ", " + std::to_string(painted.stiffening.changed) + " with another stiffening"
+                      : "")
+              << (painted.held.isPainted ? ", " + std::to_string(painted.held.changed) + " held otherwise" : "") << "\n"
               << strokes.lines << "  stiffness   " << formatQuantity(*least, unit) << " to "
               << formatQuantity(*most, unit) << ", property " << written.property
               << (kept ? ", all else as in " + canvas.file : std::string(", in a new file in metres")) << "\n";
@@ -192,12 +225,19 @@ void paint(const PaintOptions& o)
         orders.push_back(parseStroke(o.strokes[k], what(k), metres, cloud.kind()));
 
     StiffnessPainting painting(object);
-    const SoftObject  growing = object.repainted(growthsOf(canvas.loaded));
-    StiffnessPainting growth(growing);
+    FieldPainting     stiffening(object, canvas.loaded.stiffening, growthOf, stiffeningOf);
+    FieldPainting     held(object, canvas.loaded.held, holdOf, heldOf);
     StrokeAccount     strokes;
-    for (std::size_t k = 0; k < orders.size(); ++k)
-        strokes.add(orders[k], paintStroke(orders[k], what(k), object, orders[k].stiffening ? growth : painting), unit);
-    const Painted      painted = paintedBy(painting, growth, canvas.loaded);
+    for (std::size_t k = 0; k < orders.size(); ++k) {
+        StiffnessPainting& canvasOf = orders[k].stiffening ? stiffening.painting()
+                                      : orders[k].held     ? held.painting()
+                                                           : painting;
+        strokes.add(orders[k], paintStroke(orders[k], what(k), object, canvasOf), unit);
+    }
+    Painted painted{painting.cloud(), 0, stiffening.result(), held.result()};
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        painted.changed += painted.cloud.stiffness()[i] != cloud.stiffness()[i] ? 1 : 0;
+    canvas.loaded.held         = painted.held.values;
     const RepaintedPly written = write(o, canvas, painted);
     addWarnings(canvas, painted, written);
     print(o, canvas, painted, written, strokes);
@@ -211,14 +251,16 @@ void addPaintCommand(CLI::App& app)
     const auto options = std::make_shared<PaintOptions>();
     options->source.addTo(*command, SceneKey::Group::object);
     command
-        ->add_option("--stroke", options->strokes,
-                     "a stroke of the brush; may be repeated:\n"
-                     "  at        its middle X,Y,Z on the surface, or a path X,Y,Z;X,Y,Z;...\n"
-                     "  radius    of the brush; its effect falls smoothly from the middle to this distance\n"
-                     "  value     stiffness that it approaches, by equal factors; or instead of it\n"
-                     "  stiffening  how the force grows with depth, b [1/m], that it approaches; or instead of both\n"
-                     "  smooth    approaches the mean around each point\n"
-                     "  strength  share of the way that it goes in the middle, up to 1 [1]")
+        ->add_option(
+            "--stroke", options->strokes,
+            "a stroke of the brush; may be repeated:\n"
+            "  at        its middle X,Y,Z on the surface, or a path X,Y,Z;X,Y,Z;...\n"
+            "  radius    of the brush; its effect falls smoothly from the middle to this distance\n"
+            "  value     stiffness that it approaches, by equal factors; or instead of it\n"
+            "  stiffening  how the force grows with depth, b [1/m], that it approaches; or instead of both\n"
+            "  held      1 where something holds the object and it cannot bend, 0 where it is free; or instead\n"
+            "  smooth    approaches the mean around each point\n"
+            "  strength  share of the way that it goes in the middle, up to 1 [1]")
         ->required()
         ->allow_extra_args(false);
     command
@@ -234,6 +276,7 @@ void addPaintCommand(CLI::App& app)
         "strength=0.5' \\\n"
         "    --stroke 'at=12,0,30 radius=8 smooth' --out painted.ply\n"
         "  palpate paint sample:palm --stroke 'at=0,0,0 radius=1cm stiffening=800' --out stiffens.ply\n"
+        "  palpate paint lobe.ply --stroke 'at=0,9mm,0 radius=8mm held=1' --out rooted.ply\n"
         "  palpate paint samples/scenes/palm.json --stroke 'at=0,0,0 radius=1cm smooth' --out smoother.ply --json");
     command->callback([options] { paint(*options); });
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <string_view>
 
@@ -17,7 +18,7 @@ namespace {
 
 constexpr const char* kSuch = "such as 'at=0,0,30mm radius=5mm value=2MPa'";
 
-constexpr std::array<std::string_view, 6> kKeys = {"at", "radius", "value", "stiffening", "strength", "smooth"};
+constexpr std::array<std::string_view, 7> kKeys = {"at", "radius", "value", "stiffening", "held", "strength", "smooth"};
 
 using Words = std::map<std::string, std::string, std::less<>>;
 
@@ -32,7 +33,7 @@ Words wordsOf(const std::string& text, const std::string& what)
         if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
             const auto meant = nearestName(key, kKeys);
             throw Error(what + ": unknown word \"" + std::string(word) +
-                        "\"; expected at=, radius=, value=, stiffening= or smooth, " +
+                        "\"; expected at=, radius=, value=, stiffening=, held= or smooth, " +
                         "and strength=, without blanks inside" +
                         (meant ? "; did you mean " + std::string(*meant) + "?" : ""));
         }
@@ -57,15 +58,25 @@ std::vector<glm::dvec3> pathOf(std::string_view text, const std::string& what, d
 
 } // namespace
 
+double holdOf(double held) noexcept
+{
+    return std::exp(held);
+}
+
+double heldOf(double hold) noexcept
+{
+    return std::clamp(std::log(hold), 0.0, 1.0);
+}
+
 StrokeOrder parseStroke(const std::string& text, const std::string& what, double metresPerPlainNumber,
                         StiffnessKind kind)
 {
     const Words words = wordsOf(text, what);
     for (const char* key : {"at", "radius"})
         if (!words.contains(key)) throw Error(what + ": expected " + key + "=, found none, " + kSuch);
-    const auto effects = words.count("value") + words.count("stiffening") + words.count("smooth");
+    const auto effects = words.count("value") + words.count("stiffening") + words.count("held") + words.count("smooth");
     if (effects != 1)
-        throw Error(what + ": expected one of value=, stiffening= and smooth, found " +
+        throw Error(what + ": expected one of value=, stiffening=, held= and smooth, found " +
                     (effects > 1 ? std::to_string(effects) + " of them" : std::string("none of them, ") + kSuch));
     StrokeOrder order;
     order.path   = pathOf(words.at("at"), what, metresPerPlainNumber);
@@ -81,6 +92,11 @@ StrokeOrder parseStroke(const std::string& text, const std::string& what, double
         if (!(*order.stiffening >= 0 && *order.stiffening <= kMostStiffening))
             throw Error(what + ": expected a stiffening from 0 to " + shown(kMostStiffening) + " 1/m, found \"" +
                         b->second + "\"");
+    }
+    if (const auto held = words.find("held"); held != words.end()) {
+        order.held = parseQuantity(held->second, Dimension::none, what + ": held");
+        if (!(*order.held >= 0 && *order.held <= 1))
+            throw Error(what + ": expected held from 0, free, to 1, found \"" + held->second + "\"");
     }
     if (const auto strength = words.find("strength"); strength != words.end()) {
         order.strength = parseQuantity(strength->second, Dimension::none, what + ": strength");
@@ -110,7 +126,9 @@ StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, cons
     for (std::size_t k = 0; k < dabs.size(); ++k) {
         progress.at(k, dabs.size());
         const Brush brush{dabs[k], order.radius, order.strength};
-        const auto  value = order.stiffening ? growthOf(*order.stiffening) : order.value;
+        const auto  value = order.stiffening ? growthOf(*order.stiffening)
+                            : order.held     ? holdOf(*order.held)
+                                             : order.value;
         for (const std::uint32_t point : value ? painting.paint(brush, *value) : painting.smooth(brush)) {
             report.points += covered[point] ? 0 : 1;
             covered[point] = true;

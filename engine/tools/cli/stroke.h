@@ -15,8 +15,9 @@ struct StrokeOrder {
     std::vector<glm::dvec3> path;         ///< corners [m]
     double                  radius   = 0; ///< [m]
     double                  strength = 1; ///< [1]
-    std::optional<double>   value;        ///< [Pa] or [N m]; empty: the stroke smooths, or paints the next
+    std::optional<double>   value;        ///< [Pa] or [N m]; empty: the stroke smooths, or paints one of the next
     std::optional<double>   stiffening;   ///< b [1/m], see DepthLaw
+    std::optional<double>   held;         ///< share of a point that is held, 0 to 1 [1]
 };
 
 /// Reads a stroke.
@@ -26,6 +27,11 @@ struct StrokeOrder {
 [[nodiscard]] StrokeOrder parseStroke(const std::string& text, const std::string& what, double metresPerPlainNumber,
                                       StiffnessKind kind);
 
+/// Returns the number above zero that stands for a share that is held where logarithms are painted.
+[[nodiscard]] double holdOf(double held) noexcept;
+/// Returns its inverse, 0 to 1.
+[[nodiscard]] double heldOf(double hold) noexcept;
+
 /// The effect of a stroke.
 struct StrokeReport {
     std::size_t dabs   = 0;
@@ -33,7 +39,8 @@ struct StrokeReport {
 };
 
 /// Paints a stroke and shows progress on a terminal.
-/// \param painting  of the stiffness, or of growthOf() the stiffening if the stroke is one of that
+/// \param painting  of the stiffness; or of growthOf() the stiffening or holdOf() the share that is held, if the stroke
+///                  is one of those
 /// \throws Error if a corner of the path is farther from the cloud than the radius
 [[nodiscard]] StrokeReport paintStroke(const StrokeOrder& order, const std::string& what, const SoftObject& object,
                                        StiffnessPainting& painting);

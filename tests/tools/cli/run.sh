@@ -908,6 +908,12 @@ holds 'stiffening  0 1/m to 7' # the middle lies between points
 good 'and feel it' touch stiffens.csv --place 0,0,1.5mm --window 40mm --cells 32 --force 1 --json
 holds '"stiffening": '
 bad 'a stiffening below zero' 'stiffening from 0 to' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm stiffening=-1' --out no.csv
+good 'paint what is held' paint sample:skin --points 5000 --stroke 'at=-30mm,0,1.5mm radius=15mm held=1' --out rooted.ply --json
+holds '"held": 1'
+holds '"changed_points": 0'
+good 'and feel it' touch rooted.ply --held own --window object --cells 32 --place 0,0,1.5mm --json
+grep -q '"nodes_held": 0' out.txt && complain "nothing is held: $(grep nodes_held out.txt)" || passed=$((passed + 1))
+bad 'more than held' 'from 0, free, to 1' paint soft.json --stroke 'at=0,0,1.5mm radius=6mm held=2' --out no.csv
 good 'painting beside everything' paint sample:skin --points 5000 --stroke 'at=0,0,1.5mm radius=6mm value=1MPa' --stiffness constant:value=1e6 --out same.ply
 holds 'no stroke changed anything'
 mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
@@ -915,7 +921,7 @@ mesh='paint mesh.ply --uniform 1kPa --out no.ply --stroke'
 {
     bad 'a stroke without a place' '--stroke 1: expected at=' $mesh 'radius=1mm value=1kPa'
     bad 'a stroke without a radius' '--stroke 1: expected radius=' $mesh 'at=1,1,0 value=1kPa'
-    bad 'a stroke towards nothing' 'one of value=, stiffening= and smooth' $mesh 'at=1,1,0 radius=1mm'
+    bad 'a stroke towards nothing' 'one of value=, stiffening=, held= and smooth' $mesh 'at=1,1,0 radius=1mm'
     bad 'a stroke towards both' 'found 2 of them' $mesh 'at=1,1,0 radius=1mm smooth value=1kPa'
     bad 'a slip in a stroke' 'did you mean radius?' $mesh 'at=1,1,0 radios=1mm smooth'
     bad 'a word twice' 'radius is given twice' $mesh 'at=1,1,0 radius=1mm radius=2mm smooth'
