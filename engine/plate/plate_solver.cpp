@@ -36,6 +36,7 @@ bool fitsReference(const PlateGrid& grid)
 
 std::string stoppedAt(const SolveReport& report)
 {
+    if (std::isnan(*report.errorEstimate)) return "the multigrid solver found what is not a number"; // of some shells
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
 }
 
@@ -475,8 +476,8 @@ PlateSolver::PlateSolver(compute::ContextSettings settings, SoftwareBits bits)
         note_      = error.what();
         processor_ = makeHost();
     }
-    name_      = processor_->context.processor().name;
-    takeovers_ = note_.empty() ? 0 : 1;
+    name_ = processor_->context.processor().name;
+    if (!note_.empty()) noteTakeover(name_);
 }
 
 PlateSolver::~PlateSolver()                                 = default;
@@ -501,20 +502,23 @@ PlateSolver::Counts PlateSolver::counts() const noexcept
     return now;
 }
 
-std::string PlateSolver::takeoverSince(int before, const std::string& solvedBy) const
+std::string PlateSolver::takeoverSince(int before) const
 {
-    if (takeovers_ <= before) return {};
-    const std::string who = solvedBy == kReference                ? "the reference solver"
-                            : solvedBy == compute::kHostProcessor ? "the host"
-                                                                  : solvedBy;
-    return who + " took over: " + note_;
+    return takeovers_ > before ? takeover_ : std::string();
 }
 
-void PlateSolver::countTakeover(const std::string& solvedBy)
+void PlateSolver::noteTakeover(const std::string& by)
 {
-    const bool others = solvedBy != name_;
+    const std::string who = by == kReference ? "the reference solver" : by == compute::kHostProcessor ? "the host" : by;
+    takeover_             = who + " took over: " + note_;
+    ++takeovers_;
+}
+
+void PlateSolver::noteSolvedBy(const std::string& solver)
+{
+    const bool others = solver != name_;
     if (others && (!othersSolve_ || note_ != counted_)) {
-        ++takeovers_;
+        noteTakeover(solver);
         counted_ = note_;
     }
     othersSolve_ = others;
@@ -611,8 +615,8 @@ void PlateSolver::takeHost()
 void PlateSolver::loseProcessor(const std::exception& why)
 {
     note_ = why.what();
-    ++takeovers_;
     takeHost();
+    noteTakeover(name_);
 }
 
 double PlateSolver::timeOf(const PlateTrial& trial, const Clock& clock)
@@ -629,7 +633,7 @@ std::vector<PlateSolver::ProcessorTime> PlateSolver::keepFaster(const PlateTrial
         times[0].milliseconds = processor_->timeOf(trial, clock);
     } catch (const std::exception& error) { // lost, too small, without the doubles that the tolerance needs
         note_ = error.what();
-        ++takeovers_;
+        noteTakeover(std::string(compute::kHostProcessor));
     }
     times.push_back({std::string(compute::kHostProcessor), host().timeOf(trial, clock)});
     if (times[1].milliseconds < times[0].milliseconds) takeHost();
@@ -644,7 +648,7 @@ std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<c
     auto answer =
         byMultigrid<Answer>(plate, tolerance, [&](Multigrid& by) { return by.solve(plate, nodalForces, tolerance); });
     if (!answer) answer = byReference(plate, nodalForces, tolerance);
-    countTakeover(answer->front().report.solver);
+    noteSolvedBy(answer->front().report.solver);
     return std::move(*answer);
 }
 
@@ -655,7 +659,7 @@ FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<con
     auto answer = byMultigrid<FootprintSolution>(
         plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance, drawn); }, loads.size());
     if (!answer) answer = byReference(plate, loads, whole, tolerance);
-    countTakeover(answer->whole.report.solver);
+    noteSolvedBy(answer->whole.report.solver);
     return std::move(*answer);
 }
 
@@ -669,7 +673,7 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
         if (processor_) note_ = stoppedAt(solution.whole.report);
         solution = byReference(shell, loads, whole, tolerance);
     }
-    countTakeover(solution.whole.report.solver);
+    noteSolvedBy(solution.whole.report.solver);
     return solution;
 }
 

@@ -138,10 +138,9 @@ public:
     };
     [[nodiscard]] Counts counts() const noexcept;
 
-    /// Returns in a sentence without a full stop who took over, and why, if there were more takeovers than `before`;
-    /// else empty.
-    /// \param solvedBy  report.solver of the newest answer
-    [[nodiscard]] std::string takeoverSince(int before, const std::string& solvedBy) const;
+    /// Returns in a sentence without a full stop who took over last, and why, if there were more takeovers than
+    /// `before`; else empty.
+    [[nodiscard]] std::string takeoverSince(int before) const;
 
 private:
     struct Multigrid;
@@ -160,7 +159,8 @@ private:
 
     void takeHost();                               ///< for good
     void loseProcessor(const std::exception& why); ///< for good: the host is the processor then
-    void countTakeover(const std::string& solvedBy);
+    void noteTakeover(const std::string& by);      ///< for the reason in note_
+    void noteSolvedBy(const std::string& solver);  ///< another one than before is a takeover
     [[nodiscard]] static std::vector<PlateSolution>
     byReference(const Plate& plate, std::span<const NodeField> nodalForces, double tolerance);
     [[nodiscard]] static FootprintSolution byReference(const Plate& plate, std::span<const Footprint> loads,
@@ -176,6 +176,7 @@ private:
     std::unique_ptr<Learned>   learned_;   ///< from plates that could not be solved, or not where they should be
     std::string                name_{kReference};
     std::string                note_;
+    std::string                takeover_; ///< the last one, in a sentence
     int                        takeovers_ = 0, attempts_ = 0, memoriesOfLost_ = 0;
     std::string                counted_;             ///< reason of the takeover that was counted last
     bool                       othersSolve_ = false; ///< the last plate was solved by another than the processor

@@ -50,10 +50,9 @@ void Deformation::repaint(const SoftObject& object)
 
 DeformationAnswer Deformation::solve(const Touch& touch, double lead)
 {
-    DeformationAnswer  answer = solveSomewhere(touch, lead);
-    const std::string& by     = answer.patch ? answer.patch->report.solver : solver_.name();
-    answer.takeover           = solver_.takeoverSince(told_, by);
-    told_                     = solver_.counts().takeovers;
+    DeformationAnswer answer = solveSomewhere(touch, lead);
+    answer.takeover          = solver_.takeoverSince(told_);
+    told_                    = solver_.counts().takeovers;
     return answer;
 }
 

@@ -65,7 +65,7 @@ Solved solved(const SolveOptions& options)
     const auto  told   = solver.counts().takeovers;
     s.solution         = solvedWithProgress(solver, s.problem, options.solver.tolerance);
     s.note             = solver.note();
-    sayTakeover(solver.takeoverSince(told, s.solution.report.solver));
+    sayTakeover(solver.takeoverSince(told));
     if (const SolveReport& report = s.solution.report; !report.converged)
         s.problem.warnings.push_back(
             "the solution misses --tolerance: " + errorText(report) + "; try fewer cells" +

@@ -279,7 +279,7 @@ void touch(const TouchOptions& options)
     PlateSolver   solver      = openSolver(scene.solver);
     const auto    told        = solver.counts().takeovers;
     const Patch   patch       = deform(object, contact, settings, solver);
-    tellTakeover(solver.takeoverSince(told, patch.report.solver), patch, settings.tolerance);
+    tellTakeover(solver.takeoverSince(told), patch, settings.tolerance);
     demandDeformed(patch);
 
     nlohmann::json report = patchJson(object, patch, settings, force, solver);
