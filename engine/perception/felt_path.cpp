@@ -124,7 +124,7 @@ std::vector<FeltPlace> windowsAlong(const SoftObject& object, const PatchSetting
     return result;
 }
 
-std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line)
+FeltStroke strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line)
 {
     constexpr double kSpeed   = 50e-3; // [m/s] a hand that explores
     constexpr double kHeight  = 5e-3;  // [m] where it starts
@@ -153,7 +153,7 @@ std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, 
             ticks.push_back({alongOf(line, s.proxy), force / depth, limited || depth > kHeld * script.depth});
     });
     if (ticks.empty()) throw Error("the stroking hand met nothing along the path; try another place or reach");
-    return ticks;
+    return {std::move(ticks), deformation.plateSolver().takeoverSince(0)};
 }
 
 double heldShare(const std::vector<FeltTick>& ticks)

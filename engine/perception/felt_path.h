@@ -1,4 +1,5 @@
 #pragma once
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -51,10 +52,16 @@ struct FeltTick {
 /// Returns the share of ticks in which the hand is held [1].
 [[nodiscard]] double heldShare(const std::vector<FeltTick>& ticks);
 
+/// What a sliding finger feels.
+struct FeltStroke {
+    std::vector<FeltTick> ticks;
+    std::string           takeover; ///< who took over in its session, see PlateSolver::takeoverSince()
+};
+
 /// Moves a hand once to and fro along the line at constant depth, through all parts of a session: proxy, tables at the
 /// scene's rate, hand-over, tank and governor, in virtual time. Ticks count from the moment when the force is fully on.
 /// \throws as runVirtual(), and Error if the hand met nothing
-[[nodiscard]] std::vector<FeltTick> strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line);
+[[nodiscard]] FeltStroke strokeAlong(const SoftObject& object, const Scene& scene, const FeltLine& line);
 
 /// Returns the same points with one stiffness for all, the geometric mean, and one b, on an even foundation. A change
 /// felt on it is an artefact.

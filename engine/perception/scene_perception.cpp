@@ -31,11 +31,14 @@ ScenePerception perceive(const Scene& scene, const SoftObject& object, const Fel
     step(1);
     const auto rest = windowsAlong(plain, scene.patch, line, places, solver);
     step(2);
-    result.stroke = strokeAlong(object, scene, line);
+    FeltStroke stroke = strokeAlong(object, scene, line);
     step(3);
-    result.floor   = strokeAlong(plain, scene, line);
-    result.atRest  = stepsOf(rangeOf(result.places, law), rangeOf(rest, law));
-    result.sliding = stepsOf(rangeOf(result.stroke), rangeOf(result.floor));
+    FeltStroke floor = strokeAlong(plain, scene, line);
+    result.takeover  = stroke.takeover.empty() ? std::move(floor.takeover) : std::move(stroke.takeover);
+    result.stroke    = std::move(stroke.ticks);
+    result.floor     = std::move(floor.ticks);
+    result.atRest    = stepsOf(rangeOf(result.places, law), rangeOf(rest, law));
+    result.sliding   = stepsOf(rangeOf(result.stroke), rangeOf(result.floor));
     return result;
 }
 

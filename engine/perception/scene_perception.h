@@ -31,6 +31,7 @@ struct ScenePerception {
     std::vector<FeltTick>       floor;  ///< sliding over the homogeneous object
     std::array<NoticedSteps, 3> atRest; ///< by kWeberFractions; `floor` is that of places at rest
     std::array<NoticedSteps, 3> sliding;
+    std::string                 takeover{}; ///< who took over in a slide's session, see PlateSolver::takeoverSince()
 
     /// Returns the share of the strokes in which the surface holds the hand [1]; steps are then not all that is
     /// noticed.

@@ -52,7 +52,7 @@ TEST(FeltPath, TheFloorOfCurvedObjectsIsBelowHalfAStep)
             "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "solver": "host", "cloud": )" +
                                  std::string(object) + "}",
                              "a test", "."));
-        const auto floor = rangeOf(strokeAlong(homogeneous(felt.object), felt.scene, felt.line(12e-3)));
+        const auto floor = rangeOf(strokeAlong(homogeneous(felt.object), felt.scene, felt.line(12e-3)).ticks);
         EXPECT_LT(noticeableSteps(floor.whole, kWeberFractions[0]), kMostFloor) << object;
     }
 }
@@ -67,7 +67,7 @@ TEST(FeltPath, AStrokeHasNoSpikesWhereItTurns)
             "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm", "solver": "host", "cloud": )" +
                                  std::string(object) + "}",
                              "a test", "."));
-        const auto stroke = strokeAlong(felt.object, felt.scene, felt.line(20e-3));
+        const auto stroke = strokeAlong(felt.object, felt.scene, felt.line(20e-3)).ticks;
         double     most   = 0; // [1] change of the felt stiffness in a millisecond
         for (std::size_t n = 1; n < stroke.size(); ++n)
             most = std::max(most, std::abs(std::log(stroke[n].stiffness / stroke[n - 1].stiffness)));
@@ -124,7 +124,7 @@ TEST(FeltPath, TheFingerTurnsWithTheSurface)
 TEST(FeltPath, AHandThatAWallHoldsIsSaidToBeHeld)
 {
     Felt       felt   = bentSheet({0, 0, 1});
-    const auto stroke = strokeAlong(felt.object, felt.scene, felt.line(6e-3, glm::dvec3(1, 0, 0)));
+    const auto stroke = strokeAlong(felt.object, felt.scene, felt.line(6e-3, glm::dvec3(1, 0, 0))).ticks;
     EXPECT_EQ(heldShare(stroke), 0) << "the stroke follows the bend";
     std::vector<FeltTick> ticks{{0, 100, false}, {1e-3, 200, false}, {2e-3, 1e4, true}, {2e-3, 1, true}};
     EXPECT_EQ(heldShare(ticks), 0.5);

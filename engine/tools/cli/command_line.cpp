@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <iostream>
 
+#include <nlohmann/json.hpp>
+
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 
@@ -24,6 +26,11 @@ void warn(const std::vector<std::string>& sentences, std::vector<std::string>& s
 void say(const std::vector<std::string>& sentences)
 {
     for (const std::string& sentence : sentences) std::cerr << "palpate: " << sentence << "\n";
+}
+
+nlohmann::ordered_json orNull(const std::string& text)
+{
+    return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
 }
 
 void demandSvg(const std::string& option, const std::string& file)

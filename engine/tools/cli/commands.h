@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 #include "engine/core/contract.h"
 #include "engine/core/enum_names.h"
@@ -87,6 +88,9 @@ template <NamedEnum Enum>
 
 /// Returns the command line with a command's options, quoted for a shell.
 [[nodiscard]] std::string commandOf(const CLI::App& command);
+
+/// Returns a text for JSON; null: an empty one.
+[[nodiscard]] nlohmann::ordered_json orNull(const std::string& text);
 
 /// Returns JSON as all commands print it. JSON holds only UTF-8: other bytes, as in file names, become U+FFFD.
 template <class Json>

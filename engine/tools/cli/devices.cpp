@@ -49,11 +49,6 @@ std::optional<double> trialOf(const Machine& machine, int index)
     return found == machine.trialMs.end() ? std::nullopt : std::optional(found->second);
 }
 
-nlohmann::ordered_json orNull(const std::string& text)
-{
-    return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
-}
-
 nlohmann::ordered_json jsonOf(const compute::Processor& unit, const Machine& machine)
 {
     const bool isHost = unit.kind == compute::ProcessorKind::host;

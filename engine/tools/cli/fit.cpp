@@ -235,6 +235,7 @@ void fitMap(const FitOptions& o)
     demandMap(o, scene, loaded.cloud);
     refuseSourcesAsTargets(o, scene.cloud);
     PlateSolver solver = openSolver(scene.solver);
+    const int   told   = solver.counts().takeovers;
     LoadedCloud guess  = loaded; // one modulus everywhere
     const auto  at     = loaded.cloud.positions();
     guess.cloud =
@@ -243,7 +244,8 @@ void fitMap(const FitOptions& o)
     Progress             progress("fitting " + o.source.name);
     fit::FeltFitSettings settings{scene.patch, o.places, 15,
                                   [&](std::size_t done, std::size_t total) { progress.at(done, total); }};
-    const fit::FeltFit   found = fit::fitFeltMap(start, loaded.cloud.stiffness(), settings, solver);
+    const fit::FeltFit   found    = fit::fitFeltMap(start, loaded.cloud.stiffness(), settings, solver);
+    const std::string    takeover = sayTakeovers(solver, told);
     if (!o.out.empty()) {
         const auto felt = loaded.cloud.stiffness();
         writeCloud(o.out, found.object.cloud(),
@@ -279,6 +281,7 @@ void fitMap(const FitOptions& o)
               {"reach", found.reach},
               {"left_out", found.leftOut},
               {"solved_on", solver.name()},
+              {"takeover", orNull(takeover)},
               {"warnings", odd}};
     addWritten(json, o);
     std::cout << jsonText(json);

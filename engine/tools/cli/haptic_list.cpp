@@ -7,6 +7,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/real_time.h"
 #include "engine/session/device_registry.h"
+#include "engine/tools/cli/commands.h"
 
 namespace palp {
 namespace {
@@ -78,9 +79,6 @@ void measureExchanges(std::vector<DeviceListing>& devices)
 
 nlohmann::ordered_json jsonOf(const std::vector<DeviceListing>& devices)
 {
-    const auto orNull = [](const std::string& text) {
-        return text.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(text);
-    };
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     for (const DeviceListing& device : devices)
         list.push_back({{"name", device.name},

@@ -114,6 +114,7 @@ void paper(const PaperOptions& o)
     SolverChoice choice;
     choice.solver      = o.solver;
     PlateSolver solver = choice.open();
+    const int   told   = solver.counts().takeovers;
     if (!o.bunny.empty()) {
         static_cast<void>(openForReading(o.bunny)); // before minutes of work
         std::cerr << bunnyTerms() << "\n";
@@ -131,6 +132,7 @@ void paper(const PaperOptions& o)
         if (part.letter == 'b' && !o.bunny.empty()) addBunny(sections.back(), o.bunny, run);
         if (part.letter == 'i' && !o.bunny.empty()) addCurvedBunny(sections.back(), o.bunny, run);
     }
+    const std::string takeover = sayTakeovers(solver, told);
     warn(renderer.warnings());
     const Origins               origins{PALPATE_VERSION, PALPATE_COMMIT, PALPATE_LIBRARIES, machine(), solver.name(),
                           o.command,       o.quick};
@@ -141,6 +143,7 @@ void paper(const PaperOptions& o)
     write(folder / "index.html", reportPage(sections, origins));
     if (o.json)
         std::cout << jsonText(nlohmann::ordered_json{{"page", (folder / "index.html").string()},
+                                                     {"takeover", orNull(takeover)},
                                                      {"numbers", nlohmann::ordered_json::parse(numbers)},
                                                      {"timings", nlohmann::ordered_json::parse(timings)}});
     else

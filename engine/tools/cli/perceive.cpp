@@ -38,7 +38,7 @@ struct PerceiveOptions {
 struct Felt {
     explicit Felt(const PerceiveOptions& o)
         : scene(o.scene.load()), loaded(o.scene.loadObject(scene)), object(loaded.object),
-          solver(openSolver(scene.solver))
+          solver(openSolver(scene.solver)), told(solver.counts().takeovers)
     {
         warn(cloudWarnings(scene, object.cloud(), loaded.report), said);
     }
@@ -46,7 +46,9 @@ struct Felt {
     LoadedObject      loaded;
     const SoftObject& object;
     PlateSolver       solver;
+    int               told; ///< takeovers, see sayTakeovers()
 
+    std::string              takeover{};
     std::vector<std::string> said{}; ///< warnings
 };
 
@@ -82,6 +84,7 @@ nlohmann::ordered_json jsonOf(const PerceiveOptions& o, const Felt& felt, const 
     all["prediction"] = true;
     all["force_law"]  = name(felt.scene.patch.forceLaw);
     all["solved_on"]  = felt.solver.name();
+    all["takeover"]   = orNull(felt.takeover);
     all["path"]       = {{"middle", {p.line.middle.point.x, p.line.middle.point.y, p.line.middle.point.z}},
                          {"direction", {p.line.direction.x, p.line.direction.y, p.line.direction.z}},
                          {"reach", p.line.reach},
@@ -167,6 +170,7 @@ void perceive(const PerceiveOptions& o)
     const ScenePerception  found  = perceive(felt.scene, felt.object, line, o.places, felt.solver, onStep);
     std::optional<FeltMap> map;
     if (!o.picture.empty()) map = feltMap(felt.object, felt.scene.patch, std::size_t(o.mapPlaces), felt.solver, onStep);
+    felt.takeover = sayTakeovers(felt.solver, felt.told, found.takeover);
     if (!o.out.empty())
         write(o.out, pathSvg(found, felt.scene.patch.forceLaw, "Felt stiffness along the path: " + o.scene.title()));
     constexpr double kTypicalWeber = kWeberFractions[1];

@@ -78,7 +78,8 @@ TouchLook lookOf(const RenderOptions& o)
 struct Stage {
     explicit Stage(const RenderOptions& o)
         : size(sizeOf(o)), look(lookOf(o)), scene(o.scene.load()), renderer({.processor = o.drawOn}),
-          loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), view(loaded.object, scene.patch)
+          loaded(o.scene.loadObject(scene)), solver(openSolver(scene.solver)), told(solver.counts().takeovers),
+          view(loaded.object, scene.patch)
     {
         sayPassedOver(renderer.processor().name, renderer.note());
         scene.patch = settledFor(loaded.object, scene.patch);
@@ -91,7 +92,9 @@ struct Stage {
     SurfaceRenderer renderer; // before the cloud, so that a missing processor is reported at once
     LoadedObject    loaded;
     PlateSolver     solver;
+    int             told; ///< takeovers, see sayTakeovers()
     TouchView       view;
+    std::string     takeover{}; ///< in the session of a film, see sayTakeovers()
 };
 
 Patch patchAt(Stage& stage, const Contact& contact)
@@ -177,6 +180,7 @@ Filmed recordsOf(const RenderOptions& o, Stage& stage, int frames, std::vector<s
                              *source.device, source.frame,        deformation.firstLaw()};
     std::vector<TickRecord> all;
     static_cast<void>(runVirtual(parts, source.seconds, [&](const TickRecord& s) { all.push_back(s); }));
+    stage.takeover = deformation.plateSolver().takeoverSince(0);
     if (all.empty()) throw Error("--seconds: expected a hand of at least a millisecond");
     Filmed film{{}, source.device->info().rotates};
     for (int n = 0; n < frames; ++n)
@@ -231,7 +235,7 @@ std::vector<Written> film(const RenderOptions& o, Stage& stage, std::vector<std:
 }
 
 void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>& written,
-          const std::vector<std::string>& said)
+          const std::vector<std::string>& said, const std::string& takeover)
 {
     if (o.json) {
         nlohmann::ordered_json all;
@@ -240,6 +244,7 @@ void tell(const RenderOptions& o, const Stage& stage, const std::vector<Written>
         all["size"]      = {stage.size.width, stage.size.height};
         all["drawn_on"]  = stage.renderer.processor().name;
         all["solved_on"] = stage.solver.name();
+        all["takeover"]  = orNull(takeover);
         all["warnings"]  = said;
         for (const Written& w : written)
             all["pictures"].push_back({{"file", w.file},
@@ -270,7 +275,7 @@ void render(const RenderOptions& o)
     std::vector<std::string> said;
     warn(cloudWarnings(stage.scene, stage.loaded.object.cloud(), stage.loaded.report), said);
     const auto written = o.frames ? film(o, stage, said) : std::vector{still(o, stage, said)};
-    tell(o, stage, written, said);
+    tell(o, stage, written, said, sayTakeovers(stage.solver, stage.told, stage.takeover));
 }
 
 } // namespace

@@ -12,6 +12,7 @@
 #include "engine/tools/cli/scene_source.h"
 #include "engine/tools/cli/session_report.h"
 #include "engine/tools/cli/session_run.h"
+#include "engine/tools/cli/solver_choice.h"
 #include "engine/tools/study/hunt_scene.h"
 
 // palpate run and palpate replay: a hand feels a scene, and a recorded session is computed again.
@@ -74,16 +75,22 @@ void replay(const ReplayOptions& o)
     const SessionSummary summary =
         playVirtual({scene, object, deformation.solver(), hand, {}, deformation.firstLaw(), session.from}, seconds,
                     [&](const TickRecord& record) { again.records.push_back(record); });
+    const std::string takeover = deformation.plateSolver().takeoverSince(0);
+    sayTakeover(takeover);
     if (!o.compare) {
-        o.json ? void(std::cout << jsonText(jsonOf(summary)))
-               : printText(summary, deformation.plateSolver().name(), hand.info().model);
+        nlohmann::json all = jsonOf(summary);
+        all["takeover"]    = orNull(takeover);
+        o.json ? void(std::cout << jsonText(all))
+                  : printText(summary, deformation.plateSolver().name(), hand.info().model);
         return;
     }
     const auto difference = compareSessions(session, again);
     const auto sentence   = difference ? describe(*difference, session, again) : "all ticks are equal to the bit";
     if (o.json) // "samples" is the word of session.json
-        std::cout << jsonText(
-            nlohmann::json{{"equal", !difference}, {"samples", again.records.size()}, {"says", sentence}});
+        std::cout << jsonText(nlohmann::json{{"equal", !difference},
+                                             {"samples", again.records.size()},
+                                             {"takeover", orNull(takeover)},
+                                             {"says", sentence}});
     else
         std::cout << counted(again.records.size(), "tick") << ": " << sentence << "\n";
     if (difference) throw CheckFailed(sentence);

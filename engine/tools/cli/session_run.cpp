@@ -92,16 +92,6 @@ PatchSolver telling(PatchSolver solver)
     });
 }
 
-/// Returns the solver, which also keeps who took over last. The session's thread for deformations writes it.
-PatchSolver keeping(PatchSolver solver, std::string& takeover)
-{
-    return [solver = std::move(solver), &takeover](const Touch& touch, double lead) {
-        DeformationAnswer answer = solver(touch, lead);
-        if (!answer.takeover.empty()) takeover = answer.takeover;
-        return answer;
-    };
-}
-
 /// Opens the outlets that the user names.
 std::vector<std::unique_ptr<TickStream>> streamsOf(const SessionOptions& o)
 {
@@ -193,7 +183,7 @@ nlohmann::json jsonOf(const SessionRun& run)
     nlohmann::json all = jsonOf(run.summary);
     all["hand"]        = run.hand;
     all["solver"]      = run.solver;
-    all["takeover"]    = run.takeover.empty() ? nlohmann::json(nullptr) : nlohmann::json(run.takeover);
+    all["takeover"]    = orNull(run.takeover);
     all["warnings"]    = run.warnings;
     all["notes"]       = run.notes;
     if (run.recorded) // "samples" is the word of session.json
@@ -261,14 +251,11 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     std::atomic<bool> isClutched{false};
     auto              markers = markersOf(o, hasClutch ? &isClutched : nullptr);
 
-    const SessionParts parts{scene,
-                             loaded.object,
-                             keeping(o.blind ? deformation.solver() : telling(deformation.solver()), run.takeover),
-                             *hand.device,
-                             hand.frame,
-                             deformation.firstLaw(),
-                             hand.from};
-    const auto         recording = recordingOf(o, parts, clock, run.solver);
+    const SessionParts parts{
+        scene,        loaded.object, o.blind ? deformation.solver() : telling(deformation.solver()),
+        *hand.device, hand.frame,    deformation.firstLaw(),
+        hand.from};
+    const auto recording = recordingOf(o, parts, clock, run.solver);
     if (!o.blind) warn(run.warnings);
     if (!o.blind) say(run.notes);
     if (o.blind && !o.handIsKnown) { // nothing of the object
@@ -289,6 +276,7 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
     if (recording) run.recorded = recording->finish();
     for (const auto& stream : streams) run.streams.push_back(stream->finish());
     run.solver      = deformation.plateSolver().name();
+    run.takeover    = deformation.plateSolver().takeoverSince(0);
     run.hand        = hand.device->info().model;
     run.interrupted = stop;
     auto after      = warningsOf(run.summary);

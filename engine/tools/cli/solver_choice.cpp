@@ -36,6 +36,15 @@ void sayTakeover(const std::string& sentence)
     if (!sentence.empty()) std::cerr << "palpate: " << sentence << "\n";
 }
 
+std::string sayTakeovers(const PlateSolver& solver, int told, const std::string& inSession)
+{
+    const std::string last = solver.takeoverSince(0);
+    std::string       now  = solver.takeoverSince(told);
+    if (now.empty() && inSession != last) now = inSession; // the same: both found the same processor broken
+    sayTakeover(now);
+    return now.empty() ? last : now;
+}
+
 void checkTolerance(double tolerance)
 {
     const SceneKey& key = sceneKey("tolerance");

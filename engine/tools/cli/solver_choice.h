@@ -34,6 +34,12 @@ void sayPassedOver(const std::string& name, const std::string& note);
 /// Says on standard error who took over, if the sentence is not empty; see PlateSolver::takeoverSince().
 void sayTakeover(const std::string& sentence);
 
+/// Says on standard error who took over from a command's solver, or in a session that it ran, if that was not told yet.
+/// \param told       solver.counts().takeovers that were told, as openSolver() does
+/// \param inSession  takeoverSince(0) of that session's solver
+/// \return the last sentence, told now or before, for the key "takeover" of JSON; empty: nobody took over
+std::string sayTakeovers(const PlateSolver& solver, int told, const std::string& inSession = {});
+
 /// Returns open(); where the processor is refused, the sentence adds that --solver takes the reference solver too.
 template <class Open>
 [[nodiscard]] auto orTheReference(const Open& open)

@@ -306,6 +306,40 @@ for where in start list open; do
     [ $code -eq 4 ] && [ ! -s out.txt ] && passed=$((passed + 1)) || complain "asked for, Vulkan broken at $where: exit $code: $(cat err.txt)"
 done
 
+# --- another solver takes over: each command says so, once
+told() { # told DESCRIPTION WORDS: of the last command
+    [ "$(grep -c 'took over' err.txt)" -eq 1 ] && grep -qF "$2" err.txt && grep -qF "\"takeover\": \"$2" out.txt && passed=$((passed + 1)) ||
+        complain "$1 does not say once that $2: $(cat err.txt) $(grep '"takeover"' out.txt)"
+}
+cat >hard.json <<'JSON'
+{"cloud": "sample:ellipsoid", "points": 6000, "thickness": "1 mm", "foundation": "1.74 MPa/m", "window": "60 mm", "cells": 24, "footprint_radius": "4 mm", "theory": "shell",
+ "place": [0, 0, 0.03], "deformation_rate": 10, "solver": "host",
+ "stiffness": {"law": "disc", "from": 1e12, "to": 1e3, "centre": [0, 0, 0.03], "radius": 0.014}}
+JSON
+good 'touch of a hard shell' touch hard.json --json
+grep -qF 'the reference solver took over' err.txt && passed=$((passed + 1)) || complain "a hard shell is none any more, and the next tests test nothing: $(cat err.txt)"
+good 'picture of a hard shell' render hard.json --out hard.png --size 64x64 --json
+told render 'the reference solver took over: '
+good 'film of a hard shell' render hard.json --out hard.png --size 64x64 --frames 1 --seconds 0.1 --json
+told 'render --frames' 'the reference solver took over: '
+good 'perceive a hard shell' perceive hard.json --places 3 --reach 3mm --json
+told perceive 'the reference solver took over: '
+good 'run on a hard shell' run hard.json --hand press --clock virtual --seconds 1 --record hard --json
+told run 'the reference solver took over: '
+good 'replay on a hard shell' replay hard --json
+told replay 'the reference solver took over: '
+awk -v OFS=, 'BEGIN { print "x,y,z,felt_stiffness"; for (n = 0; n < 3000; ++n) {
+    z = 1 - (2 * n + 1) / 3000; r = sqrt(1 - z * z); x = r * cos(2.4 * n); y = r * sin(2.4 * n)
+    print 0.03 * x, 0.03 * y, 0.03 * z, (z > 0.9 ? 10 : 1e7) } }' >hard.csv
+good 'fit of a hard shell' fit hard.csv --footprint-radius 4mm --thickness 1mm --foundation 1.74MPa/m --window 60mm --cells 24 --theory shell --places 30 --solver host --json
+told fit 'the reference solver took over: '
+for command in 'perceive sample:sheet --points 5000 --cells 16 --places 3 --reach 3mm' 'paper --only g --quick --out paper'; do
+    # shellcheck disable=SC2086  # a command and its arguments
+    failing open "$palpate" $command --solver auto --json && grep -qF '"takeover": "the host took over: ' out.txt && ! grep -q 'took over' err.txt &&
+        [ "$(grep -c 'auto takes host: ' err.txt)" -eq 1 ] && passed=$((passed + 1)) ||
+        complain "$command, Vulkan broken: told when it is opened, and not again: $(cat err.txt) $(grep '"takeover"' out.txt)"
+done
+
 # --- a hand feels a scene
 cat >scene.json <<'JSON'
 {"cloud": "sample:sheet", "points": 4000, "thickness": "4 mm", "foundation": "1.74 MPa/m", "window": "70 mm", "cells": 32, "footprint_radius": "4.4 mm",
