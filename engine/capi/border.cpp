@@ -4,13 +4,14 @@
 #include <filesystem>
 #include <new>
 #include <sstream>
+#include <utility>
 
 #include "engine/core/file.h"
 
 namespace palp::capi {
 namespace {
 
-thread_local std::string lastError;
+thread_local std::string lastError, lastTakeover;
 
 /// Keeps a sentence; returns the code that goes with it.
 int keep(int code, const char* opening, const char* sentence) noexcept
@@ -34,9 +35,15 @@ int refused(const std::filesystem::filesystem_error& error) noexcept
 
 } // namespace
 
-void forgetFailure() noexcept
+void forgetLastCall() noexcept
 {
     lastError.clear();
+    lastTakeover.clear();
+}
+
+void keepTakeover(std::string sentence) noexcept
+{
+    lastTakeover = std::move(sentence);
 }
 
 int failure() noexcept
@@ -88,4 +95,9 @@ const char* palpate_version(void)
 const char* palpate_error_text(void)
 {
     return palp::capi::lastError.c_str();
+}
+
+const char* palpate_takeover_text(void)
+{
+    return palp::capi::lastTakeover.c_str();
 }

@@ -15,8 +15,9 @@
  *
  * Lengths are in metres, forces in newtons, moduli in pascals, times in seconds. Functions that can fail return
  * PALPATE_OK or a code; palpate_error_text() then has a sentence for the calling thread: what, where, what was expected
- * and found. No function throws, calls back, or ends the program. Structs begin with their size, which the caller sets
- * (PALPATE_INIT does), so that a program that was compiled with an older header goes on working.
+ * and found. Where another solver took over, palpate_takeover_text() has one. No function throws, calls back, or ends
+ * the program. Structs begin with their size, which the caller sets (PALPATE_INIT does), so that a program that was
+ * compiled with an older header goes on working.
  *
  * Threads: an object may be used by several threads at once; palpate_session_step() belongs to one thread and
  * palpate_session_deformed() to one other; what creates, destroys and records runs while nobody uses the handle.
@@ -72,6 +73,10 @@ typedef enum palpate_code {
 PALPATE_API const char* palpate_version(void);
 /** Returns why the last call of this thread failed; empty if none did. Valid until this thread's next call. */
 PALPATE_API const char* palpate_error_text(void);
+/** Returns who took over in the last call of this thread, and why, as a sentence for a person: a processor was lost or too
+   small, or a plate did not converge, and another solver gave the answer, most often more slowly. Empty if none did. Valid
+   until this thread's next call; palpate_session_step() leaves it as it is. */
+PALPATE_API const char* palpate_takeover_text(void);
 
 /* --- objects --- */
 
@@ -266,6 +271,9 @@ PALPATE_API int palpate_session_step(palpate_session* session, double time, cons
                                      palpate_answer* answer);
 /** Writes why the last tick had no force, as a sentence for a person; empty while forces flow. For the thread of step(). */
 PALPATE_API int palpate_session_words(const palpate_session* session, char* text, size_t size);
+/** Writes who took over last from the solver of the session's own thread, and why, as palpate_takeover_text() says it;
+   empty: none did. A text that is too small is refused; 4096 bytes are plenty. For any thread. */
+PALPATE_API int palpate_session_takeover(const palpate_session* session, char* text, size_t size);
 /** Writes every point [m] as the newest answer of the plate and the force of now bend it, if that answer is another one
    than *sequence or the force has ended, and counts *sequence up; else nothing. Begin with 0. For a renderer's thread. */
 PALPATE_API int palpate_session_deformed(palpate_session* session, double* xyz, size_t count, uint64_t* sequence);

@@ -61,6 +61,7 @@ int palpate_plate_solve(const palpate_plate* plate, const double* forces, double
         const NodeField     load(of.grid.nodesX(), of.grid.nodesZ(), {from, from + of.grid.nodes()});
         PlateSolver         solver("host");
         const PlateSolution solution = solver.solve(of, load, tolerance);
+        keepTakeover(solver.takeoverSince(0));
         std::ranges::copy(solution.deflection.values(), deflection);
         if (error) *error = solution.report.errorEstimate.value_or(std::numeric_limits<double>::quiet_NaN());
         if (!solution.report.converged)

@@ -124,6 +124,7 @@ int palpate_session_create(const palpate_object* object, const palpate_session_s
         demand(out, "out")       = nullptr;
         const palpate_object& of = demand(object, "object");
         *out                     = new palpate_session{SteppedSession(of.object, of.scene, deviceOf(settings))};
+        keepTakeover((*out)->session.takeover());
     });
 }
 
@@ -151,6 +152,11 @@ int palpate_session_step(palpate_session* session, double time, const palpate_ha
 int palpate_session_words(const palpate_session* session, char* text, size_t size)
 {
     return guarded([&] { giveText(describeForces(demand(session, "session").last), text, size); });
+}
+
+int palpate_session_takeover(const palpate_session* session, char* text, size_t size)
+{
+    return guarded([&] { giveText(demand(session, "session").session.takeover(), text, size); });
 }
 
 int palpate_session_deformed(palpate_session* session, double* xyz, size_t count, uint64_t* sequence)
@@ -208,5 +214,6 @@ int palpate_run(const palpate_object* object, const double* times, const double*
                        if (proxies) put(r.proxy, proxies + 3 * at);
                        ++at;
                    });
+        keepTakeover(deformation.plateSolver().takeoverSince(0));
     });
 }

@@ -125,6 +125,7 @@ int palpate_touch(const palpate_object* object, const double place[3], const dou
         put(patch.contact.point, own.place);
         put(patch.chart.frame.normal, own.normal);
         give(result, own);
+        keepTakeover(solver.takeoverSince(0));
     });
 }
 
@@ -141,6 +142,7 @@ int palpate_touch_displaced(const palpate_object* object, const double place[3],
         const double load  = pressOf(patch, of.object.material(), std::abs(force)).load;
         const auto   moved = displaced(of.object.cloud(), patch, std::copysign(load, force));
         for (std::size_t n = 0; n < moved.size(); ++n) put(moved[n], xyz + 3 * n);
+        keepTakeover(solver.takeoverSince(0));
     });
 }
 
@@ -156,6 +158,7 @@ int palpate_felt_map(const palpate_object* object, const double* places, const d
         const FeltTouches all = feltTouches(of.object, of.scene.patch, count, at, of.scene.solver);
         std::ranges::copy(all.stiffness, felt);
         if (failed) *failed = all.leftOut;
+        keepTakeover(all.takeover);
     });
 }
 
@@ -168,6 +171,7 @@ int palpate_felt_map_every(const palpate_object* object, double spacing, double*
         const FeltMap map = feltMapEvery(of.object, of.scene.patch, spacing, of.scene.solver);
         std::ranges::copy(map.atPoints, felt);
         if (touched) *touched = map.places.size();
+        keepTakeover(map.takeover);
     });
 }
 
@@ -188,5 +192,7 @@ int palpate_perceive(const palpate_object* object, const palpate_path* path, pal
         give(result, numbersOf(found, stiffness));
         if (felt) std::ranges::copy(stiffness, felt);
         if (along) std::ranges::transform(found.places, along, &FeltPlace::along);
+        std::string takeover = solver.takeoverSince(0);
+        keepTakeover(takeover.empty() ? found.takeover : std::move(takeover));
     });
 }

@@ -73,7 +73,8 @@ double feltOf(const SoftObject& object, const Contact& contact, const PatchSetti
 FeltMap mapOf(const SoftObject& object, const std::vector<std::uint32_t>& places, const FeltTouches& felt, double edge)
 {
     FeltMap map;
-    map.leftOut = felt.leftOut;
+    map.leftOut  = felt.leftOut;
+    map.takeover = felt.takeover;
     for (std::size_t n = 0; n < places.size(); ++n) {
         if (std::isnan(felt.stiffness[n])) continue;
         map.places.push_back(places[n]);
@@ -126,7 +127,7 @@ FeltTouches feltTouches(const SoftObject& object, const PatchSettings& settings,
 {
     constexpr std::size_t kFewest = 8; // touches that are worth a solver and a thread
     FeltTouches           felt;
-    std::mutex            mutex; // of the next two
+    std::mutex            mutex; // of all but the stiffness
     felt.stiffness.assign(count, std::numeric_limits<double>::quiet_NaN());
     prepareTouch(object, settings);
     inParallel(count, kFewest, [&](std::size_t begin, std::size_t end) {
@@ -141,6 +142,8 @@ FeltTouches feltTouches(const SoftObject& object, const PatchSettings& settings,
                 ++felt.leftOut;
             }
         }
+        const std::lock_guard lock(mutex);
+        if (std::string who = own.takeoverSince(0); !who.empty()) felt.takeover = std::move(who);
     });
     return felt;
 }

@@ -17,6 +17,7 @@ struct FeltMap {
     double                     typical = 0; ///< the median of them [N/m]
     std::size_t                leftOut = 0; ///< omitted places: their window holds too few points, or no surface
     std::vector<double>        atPoints;    ///< felt at every point of the cloud, between the places [N/m]
+    std::string                takeover;    ///< as FeltTouches has it; empty where the solver is the caller's
 };
 
 /// Touches about `wanted` places spread evenly over the cloud, one in each cube of a lattice.
@@ -40,6 +41,7 @@ struct FeltTouches {
     std::vector<double> stiffness;   ///< [N/m], in the order of the touches; NaN where nothing can be touched
     std::size_t         leftOut = 0; ///< of them
     std::string         why;         ///< of one that was left out
+    std::string         takeover;    ///< who took over on one of the threads, see PlateSolver::takeoverSince()
 };
 
 /// Touches an object many times, on all cores.

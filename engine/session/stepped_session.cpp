@@ -1,6 +1,7 @@
 #include "engine/session/stepped_session.h"
 
 #include <cmath>
+#include <mutex>
 #include <thread>
 #include <utility>
 
@@ -40,6 +41,8 @@ struct SteppedSession::Impl {
     Scene                    scene;
     HapticDeviceInfo         device;
     Deformation              deformation;
+    std::mutex               told; ///< of `takeover`
+    std::string              takeover;
     Servo                    servo;
     DeformationLoop          loop;
     std::optional<Recording> recording;
@@ -56,7 +59,8 @@ struct SteppedSession::Impl {
 
     Impl(SoftObject touched, const Scene& given, const HapticDeviceInfo& hold)
         : object(std::move(touched)), scene(given), device(withUnknowns(hold)), deformation(object, scene),
-          servo(object, scene, device, deformation.firstLaw()), loop(deformation.solver(), scene.deformationRate)
+          takeover(deformation.plateSolver().takeoverSince(0)), servo(object, scene, device, deformation.firstLaw()),
+          loop([this](const Touch& touch, double lead) { return solved(touch, lead); }, scene.deformationRate)
     {
         thread = std::thread([this] { loop.run(over); });
     }
@@ -65,6 +69,16 @@ struct SteppedSession::Impl {
     {
         over = true;
         thread.join();
+    }
+
+    /// Solves on the deformation's thread, and keeps who took over.
+    DeformationAnswer solved(const Touch& touch, double lead)
+    {
+        DeformationAnswer answer = deformation.solve(touch, lead);
+        if (answer.takeover.empty()) return answer;
+        const std::lock_guard lock(told);
+        takeover = answer.takeover;
+        return answer;
     }
 };
 
@@ -113,6 +127,12 @@ const Patch* SteppedSession::patch() const noexcept
 {
     const ShownPatch* const shown = impl_->loop.patch.held();
     return shown && shown->patch ? &*shown->patch : nullptr;
+}
+
+std::string SteppedSession::takeover() const
+{
+    const std::lock_guard lock(impl_->told);
+    return impl_->takeover;
 }
 
 void SteppedSession::record(const std::filesystem::path& folder, const std::string& program)

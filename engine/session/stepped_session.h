@@ -37,6 +37,10 @@ public:
     /// Returns the patch that takePatch() took last; null before.
     [[nodiscard]] const Patch* patch() const noexcept;
 
+    /// Returns who took over from another solver last, and why; may be empty, see PlateSolver::takeoverSince().
+    /// \thread any
+    [[nodiscard]] std::string takeover() const;
+
     /// Records from now on into a new folder, see Recording. If the scene names no cloud, the folder gets cloud.ply.
     /// \throws Error as Recording does
     void            record(const std::filesystem::path& folder, const std::string& program);

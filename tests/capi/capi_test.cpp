@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -389,6 +390,98 @@ TEST(CInterface, AStiffnessIsTheCallersOrTheScenes)
     points.stiffness_kind = PALPATE_FELT;
     EXPECT_EQ(firstStiffness("{}"), -1);
     EXPECT_NE(std::string(palpate_error_text()).find("palpate fit"), std::string::npos) << palpate_error_text();
+}
+
+/// A soft disc in a shell so stiff that multigrid does not converge there: the reference takes over.
+const char* const kHardShell = R"({"cloud": "sample:ellipsoid", "points": 6000, "thickness": "1 mm",
+    "foundation": "1.74 MPa/m", "window": "60 mm", "cells": 24, "footprint_radius": "4 mm", "theory": "shell",
+    "place": [0, 0, 0.03], "deformation_rate": 10, "solver": "host",
+    "stiffness": {"law": "disc", "from": 1e12, "to": 1e3, "centre": [0, 0, 0.03], "radius": 0.014}})";
+
+/// Who took over, without the error that multigrid stopped at.
+const std::string kReferenceTookOver = "the reference solver took over: ";
+
+bool referenceTookOver()
+{
+    return std::string(palpate_takeover_text()).starts_with(kReferenceTookOver);
+}
+
+TEST(CInterface, EachCallSaysWhoTookOver)
+{
+    const Object        object(kHardShell);
+    const double        place[] = {0, 0, 0.03}, times[] = {0, 0.2}, hand[] = {0, 0, 0.031, 0, 0, 0.029};
+    auto                touched = PALPATE_INIT(palpate_touch_result);
+    std::vector<double> many(3 * palpate_object_size(object.handle));
+    const std::size_t   points = palpate_object_size(object.handle);
+    EXPECT_EQ(palpate_touch(object.handle, place, nullptr, &touched), PALPATE_OK) << palpate_error_text();
+    EXPECT_TRUE(referenceTookOver()) << palpate_takeover_text();
+    std::thread([] { EXPECT_STREQ(palpate_takeover_text(), ""); }).join();
+    EXPECT_TRUE(referenceTookOver()) << "it is this thread's";
+    EXPECT_EQ(palpate_object_positions(object.handle, many.data(), points), PALPATE_OK);
+    EXPECT_STREQ(palpate_takeover_text(), "") << "the last call solved nothing";
+    EXPECT_EQ(palpate_touch_displaced(object.handle, place, nullptr, 0.1, many.data(), points), PALPATE_OK);
+    EXPECT_TRUE(referenceTookOver()) << "displaced";
+    EXPECT_EQ(palpate_felt_map(object.handle, place, nullptr, 1, many.data(), nullptr), PALPATE_OK);
+    EXPECT_TRUE(referenceTookOver()) << "map";
+    EXPECT_EQ(palpate_felt_map_every(object.handle, 0.02, many.data(), points, nullptr), PALPATE_OK);
+    EXPECT_TRUE(referenceTookOver()) << "map of cubes";
+    EXPECT_EQ(palpate_run(object.handle, times, hand, 2, 200, many.data(), nullptr), PALPATE_OK);
+    EXPECT_TRUE(referenceTookOver()) << "run";
+    auto path   = PALPATE_INIT(palpate_path);
+    auto noted  = PALPATE_INIT(palpate_perception);
+    path.reach  = 3e-3;
+    path.places = 3;
+    EXPECT_EQ(palpate_perceive(object.handle, &path, &noted, nullptr, nullptr, 0), PALPATE_OK) << palpate_error_text();
+    EXPECT_TRUE(referenceTookOver()) << "perceive";
+    const Object sheet;
+    const double middle[] = {0, 0, 0};
+    EXPECT_EQ(palpate_touch(sheet.handle, middle, nullptr, &touched), PALPATE_OK) << palpate_error_text();
+    EXPECT_STREQ(palpate_takeover_text(), "") << "nothing went wrong on the sheet";
+}
+
+/// The stiffest disc of plate_solver_test.cpp.
+TEST(CInterface, APlateSaysWhoTookOver)
+{
+    constexpr int       kCells = 64, kNodes = kCells + 1;
+    std::vector<double> rigidity(kNodes * kNodes, 1.0), forces(kNodes * kNodes), deflection(kNodes * kNodes);
+    const auto          plateOf = [&](double contrast) {
+        for (int i = 0; i < kNodes; ++i)
+            for (int j = 0; j < kNodes; ++j)
+                if (std::hypot(double(i) / kCells - 0.45, double(j) / kCells - 0.55) < 0.2)
+                    rigidity[std::size_t(i * kNodes + j)] = contrast;
+        auto plate    = PALPATE_INIT(palpate_plate);
+        plate.cells_x = plate.cells_z = kCells;
+        plate.size_x = plate.size_z = 1;
+        plate.poisson               = 0.3;
+        plate.rigidity              = rigidity.data();
+        return plate;
+    };
+    forces[std::size_t(kCells / 2 * kNodes + kCells / 2)] = 1;
+    for (const double contrast : {1e9, 10.0}) {
+        const palpate_plate plate = plateOf(contrast);
+        EXPECT_EQ(palpate_plate_solve(&plate, forces.data(), 1e-4, deflection.data(), nullptr), PALPATE_OK);
+        EXPECT_EQ(referenceTookOver(), contrast > 10) << palpate_takeover_text();
+    }
+}
+
+TEST(CInterface, ASessionSaysWhoTookOver)
+{
+    const Object  object(kHardShell);
+    const Session session(object);
+    const auto    told = [&session] {
+        std::array<char, 1024> text{};
+        EXPECT_EQ(palpate_session_takeover(session.handle, text.data(), text.size()), PALPATE_OK);
+        return std::string(text.data());
+    };
+    EXPECT_EQ(told(), "");
+    for (int n = 0; n < 10'000 && told().empty(); ++n) { // until its thread has solved where the hand touches
+        session.step(1e-3 * n, 0.03 + heightAt(1e-3 * n));
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    EXPECT_TRUE(told().starts_with(kReferenceTookOver)) << told();
+    char none = 'x';
+    EXPECT_EQ(palpate_session_takeover(session.handle, &none, 1), PALPATE_REFUSED) << "there is no room";
+    EXPECT_EQ(palpate_session_takeover(nullptr, &none, 1), PALPATE_REFUSED);
 }
 
 TEST(CInterface, SentencesBelongToTheirThread)

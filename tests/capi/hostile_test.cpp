@@ -188,6 +188,7 @@ void step(Hostility& h, const palpate_object* object)
             expectAnswer(palpate_session_deformed(session, xyz.data(), xyz.size() / 3, &sequence), "deformed");
         std::array<char, 600> words{};
         if (n % 200 == 0) expectAnswer(palpate_session_words(session, words.data(), words.size()), "words");
+        if (n % 200 == 1) expectAnswer(palpate_session_takeover(session, words.data(), words.size()), "takeover");
     }
     palpate_session_destroy(session);
 }

@@ -201,6 +201,43 @@ class Touching(unittest.TestCase):
                 self.assertIn(word, str(caught.exception))
 
 
+class Takeovers(unittest.TestCase):
+    """Where multigrid does not converge: a soft disc in a very stiff shell, or a very stiff disc in a plate."""
+
+    shell = dict(cloud="sample:ellipsoid", points=6000, thickness="1 mm", foundation="1.74 MPa/m", window="60 mm", cells=24,
+                 footprint_radius="4 mm", theory="shell", place=[0, 0, 0.03], deformation_rate=10, solver="host",
+                 stiffness={"law": "disc", "from": 1e12, "to": 1e3, "centre": [0, 0, 0.03], "radius": 0.014})
+
+    def test_calls_warn(self):
+        made, place = palpate.Object.scene(self.shell), [0, 0, 0.03]
+        D, f = np.ones((65, 65)), np.zeros((65, 65))
+        x, z = np.meshgrid(np.linspace(0, 1, 65), np.linspace(0, 1, 65), indexing="ij")
+        D[np.hypot(x - 0.45, z - 0.55) < 0.2] = 1e9
+        f[32, 32] = 1
+        for call in (lambda: made.touch(place), lambda: made.felt_map([place]), lambda: made.felt_map(spacing=0.02),
+                     lambda: made.run([0, 0.2], [[0, 0, 0.031], [0, 0, 0.029]]), lambda: palpate.plate(D, f)):
+            with self.assertWarns(RuntimeWarning) as warned:
+                call()
+            self.assertTrue(str(warned.warning).startswith("the reference solver took over: "), warned.warning)
+            self.assertEqual(warned.filename, __file__, "it names the line that called")
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            made.points
+            palpate.Object(*sheet(), **SCENE).touch([0, 0, 0], side=[0, 0, 1])
+
+    def test_a_session_says_it(self):
+        with palpate.Object.scene(self.shell).session() as session:
+            self.assertEqual(session.takeover, "")
+            for n in range(10_000):
+                session.step(1e-3 * n, [0, 0, 0.033 - 4.5e-3 * min(1, 1e-3 * n)])
+                time.sleep(0.001)
+                if session.takeover:
+                    break
+            self.assertTrue(session.takeover.startswith("the reference solver took over: "), session.takeover)
+        with self.assertRaises(palpate.Error):
+            session.takeover
+
+
 class Sessions(unittest.TestCase):
     def test_a_loop_of_ones_own(self):
         made = palpate.Object(*sheet(), **SCENE)

@@ -21,15 +21,16 @@ struct palpate_object {
 
 namespace palp::capi {
 
-void              forgetFailure() noexcept; ///< of the calling thread
-[[nodiscard]] int failure() noexcept;       ///< the code of the exception in flight; its sentence is kept
+void              forgetLastCall() noexcept; ///< of the calling thread
+[[nodiscard]] int failure() noexcept;        ///< the code of the exception in flight; its sentence is kept
+void              keepTakeover(std::string sentence) noexcept; ///< for palpate_takeover_text()
 
 /// Runs the body of a function of the interface; returns its code.
 template <class Body>
 int guarded(const Body& body) noexcept
 {
     try {
-        forgetFailure();
+        forgetLastCall();
         body();
         return PALPATE_OK;
     } catch (...) {

@@ -11,7 +11,8 @@ True
 
 It is a thin layer over libpalpate.so.0 (palpate.h): numpy is the only dependency, and calls release the interpreter's
 lock. Lengths are in metres, forces in newtons, moduli in pascals, times in seconds. Arrays may have any layout and may be
-read-only; what comes back is new, writable and in C order. What is wrong raises palpate.Error with a sentence.
+read-only; what comes back is new, writable and in C order. What is wrong raises palpate.Error with a sentence. Where
+another solver took over, because a processor was lost or a plate did not converge, a RuntimeWarning says who and why.
 """
 
 from __future__ import annotations
@@ -124,6 +125,7 @@ def _declare(name: str, result: Any, *arguments: Any) -> None:
 _void, _int, _text, _size = ctypes.c_void_p, ctypes.c_int, ctypes.c_char_p, ctypes.c_size_t
 _declare("palpate_version", _text)
 _declare("palpate_error_text", _text)
+_declare("palpate_takeover_text", _text)
 _declare("palpate_object_from_points", _int, ctypes.POINTER(_Points), _text, ctypes.POINTER(_void))
 _declare("palpate_object_from_scene", _int, _text, _text, ctypes.POINTER(_void))
 _declare("palpate_object_from_file", _int, _text, ctypes.POINTER(_void))
@@ -141,6 +143,7 @@ _declare("palpate_session_create", _int, _void, ctypes.POINTER(_SessionSettings)
 _declare("palpate_session_destroy", None, _void)
 _declare("palpate_session_step", _int, _void, ctypes.c_double, ctypes.POINTER(_Hand), ctypes.POINTER(_Answer))
 _declare("palpate_session_words", _int, _void, _text, _size)
+_declare("palpate_session_takeover", _int, _void, _text, _size)
 _declare("palpate_session_deformed", _int, _void, _void, _size, _u64_p)
 _declare("palpate_session_record", _int, _void, _text)
 _declare("palpate_session_stop_recording", _int, _void, _u64_p, _u64_p)
@@ -151,6 +154,14 @@ _declare("palpate_plate_solve", _int, ctypes.POINTER(_Plate), _void, ctypes.c_do
 def _check(code: int) -> None:
     if code != 0:
         raise Error(_lib.palpate_error_text().decode("utf-8", "replace") or f"palpate: error {code}")
+
+
+def _solved(code: int) -> None:
+    """Checks a call that solved plates, and warns the caller of our caller if another solver took over."""
+    _check(code)
+    takeover = _lib.palpate_takeover_text().decode("utf-8", "replace")
+    if takeover:
+        warnings.warn(takeover, RuntimeWarning, stacklevel=3)
 
 
 def version() -> str:
@@ -426,7 +437,7 @@ class Object:
         place, direction = _doubles(at, "at", 3), _three(side, "side")
         newtons = None if force is None else _number(force, "force")
         found = _TouchResult()
-        _check(_lib.palpate_touch(self._handle, _address(place), _address(direction), ctypes.byref(found)))
+        _solved(_lib.palpate_touch(self._handle, _address(place), _address(direction), ctypes.byref(found)))
         moved = None
         if newtons is not None:
             moved = np.empty((len(self), 3))
@@ -448,12 +459,12 @@ class Object:
                 raise Error("spacing: expected places or a spacing, found both")
             felt = np.empty(len(self))
             metres = _number(spacing, "spacing")
-            _check(_lib.palpate_felt_map_every(self._handle, metres, _address(felt), len(felt), None))
+            _solved(_lib.palpate_felt_map_every(self._handle, metres, _address(felt), len(felt), None))
             return felt
         at = self.points if places is None else _doubles(places, "places", None, 3)
         directions = None if sides is None else _doubles(sides, "sides", len(at), 3)
         felt = np.empty(len(at))
-        _check(_lib.palpate_felt_map(self._handle, _address(at), _address(directions), len(at), _address(felt), None))
+        _solved(_lib.palpate_felt_map(self._handle, _address(at), _address(directions), len(at), _address(felt), None))
         return felt
 
     def perceive(self, place: Optional[ArrayLike] = None, side: Optional[ArrayLike] = None,
@@ -469,8 +480,8 @@ class Object:
                       reach=_number(reach, "reach"), places=_whole(places, "places"))
         found, room = _Perception(), max(3, asked.places or 41)
         along, felt = np.empty(room), np.empty(room)
-        _check(_lib.palpate_perceive(self._handle, ctypes.byref(asked), ctypes.byref(found), _address(along),
-                                     _address(felt), room))
+        _solved(_lib.palpate_perceive(self._handle, ctypes.byref(asked), ctypes.byref(found), _address(along),
+                                      _address(felt), room))
         return Perception(along, felt, *(np.array(getattr(found, name)) for name in
                                          ("weber", "at_rest", "sliding", "passing", "floor", "right")), found.held)
 
@@ -489,8 +500,8 @@ class Object:
         if not 0 <= ticks <= 86_400_000:
             raise Error(f"ticks: expected 0 to 86400000, which is a day, found {ticks}")
         forces, proxies = np.zeros((ticks, 3)), np.zeros((ticks, 3))
-        _check(_lib.palpate_run(self._handle, _address(at), _address(path), len(at), ticks, _address(forces),
-                                _address(proxies)))
+        _solved(_lib.palpate_run(self._handle, _address(at), _address(path), len(at), ticks, _address(forces),
+                                 _address(proxies)))
         return forces, proxies
 
     def session(self, mass: float = 0, damping: float = 0, maximum_force: float = 0,
@@ -517,7 +528,7 @@ class Session:
         settings = _SessionSettings(device_mass=_number(mass, "mass"), device_damping=_number(damping, "damping"),
                                     maximum_force=_number(force, "maximum_force"),
                                     maximum_stiffness=_number(stiffness, "maximum_stiffness"))
-        _check(_lib.palpate_session_create(of._handle, ctypes.byref(settings), ctypes.byref(self._handle)))
+        _solved(_lib.palpate_session_create(of._handle, ctypes.byref(settings), ctypes.byref(self._handle)))
 
     def close(self) -> None:
         """Ends the session and its recording. It may be called again.
@@ -585,9 +596,17 @@ class Session:
     @property
     def words(self) -> str:
         """Why the last tick had no force; empty while forces flow."""
-        text = ctypes.create_string_buffer(1024)
+        return self._said(_lib.palpate_session_words)
+
+    @property
+    def takeover(self) -> str:
+        """Who took over last from the solver, and why: a processor was lost, or a plate did not converge; else empty."""
+        return self._said(_lib.palpate_session_takeover)
+
+    def _said(self, function: Any) -> str:
+        text = ctypes.create_string_buffer(4096)
         with self._stepping:
-            _check(_lib.palpate_session_words(self._open(), text, len(text)))
+            _check(function(self._open(), text, len(text)))
         return text.value.decode("utf-8", "replace")
 
     def deformed(self) -> Optional[np.ndarray]:
@@ -649,8 +668,8 @@ def plate(rigidity: ArrayLike, forces: ArrayLike, size: "tuple[float, float]" = 
                    rigidity=_address(D))
     given.edges[:] = [names[edge] for edge in four]
     w, error = np.empty(D.shape), ctypes.c_double()
-    _check(_lib.palpate_plate_solve(ctypes.byref(given), _address(f), _number(tolerance, "tolerance"), _address(w),
-                                    ctypes.byref(error)))
+    _solved(_lib.palpate_plate_solve(ctypes.byref(given), _address(f), _number(tolerance, "tolerance"), _address(w),
+                                     ctypes.byref(error)))
     return w, error.value
 
 
