@@ -88,7 +88,7 @@ void printText(const compute::Processor& unit, const Machine& machine)
                   << " loads on " << kTrialCells << " x " << kTrialCells << " cells";
     std::cout << "\n   memory   " << (unit.memory >> 20) << " MiB\n   float64  " << (unit.float64 ? "yes" : "no")
               << "\n   usable   " << (unit.refusals.empty() ? "yes" : "no: " + joined(unit.refusals))
-              << (unit.index == machine.taken ? "; auto takes it" : "") << "\n";
+              << (unit.index == machine.taken ? "; sessions with auto take it" : "") << "\n";
 }
 
 void printText(const DeviceList& haptics)
@@ -211,7 +211,7 @@ void addDevicesCommand(CLI::App& app)
     all->excludes(haptic);
     command->add_flag("--json", options->json,
                       "machine-readable: a list if only one kind is asked for, else an object with \"haptic\" and "
-                      "\"processors\"; \"auto\" is true for the processor that auto takes");
+                      "\"processors\"; \"auto\" is true for the processor that a session with auto takes");
     command->footer(
         "Each haptic device is opened and closed again as a test; for one that cannot be used the list gives the\n"
         "reason and a remedy. One with motors is asked for half a second, at zero force, how often it answers and how\n"

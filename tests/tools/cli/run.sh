@@ -221,7 +221,7 @@ for key in '"case": "dispatches"' '"schedule": "fused"' '"nested_iteration": 4' 
 
 good 'list of devices' devices
 holds 'host  '
-holds 'usable   yes; auto takes it'
+holds 'usable   yes; sessions with auto take it'
 holds 'arm  a simulated arm'
 holds 'looked for with '
 holds 'hidapi'
@@ -239,7 +239,7 @@ bad 'two other sorts alone at once' 'excludes' devices --processors --haptic
 good 'list of processors' devices --processors
 holds 'for a new map and 25 loads on 64 x 64 cells'
 holds 'host  '
-holds 'usable   yes; auto takes it'
+holds 'usable   yes; sessions with auto take it'
 grep -q 'a simulated arm' out.txt && complain "an arm solves nothing: $(cat out.txt)" || passed=$((passed + 1))
 
 # doctor [VARIABLE=VALUE...] -- WORDS of one line of its output, runs of blanks as one
@@ -284,7 +284,7 @@ without "$palpate" devices --gpus --json
 code=$?
 [ $code -eq 4 ] && grep -qF 'mesa-vulkan-drivers' err.txt && [ "$(cat out.txt)" = '[]' ] && passed=$((passed + 1)) ||
     complain "a machine without a GPU: exit $code, expected 4: $(cat out.txt err.txt)"
-without "$palpate" devices && grep -qF 'auto takes it' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
+without "$palpate" devices && grep -qF 'sessions with auto take it' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
     complain "a machine without a GPU has its host: $(cat out.txt err.txt)"
 without "$palpate" solve plate.json --json && grep -qF '"solver": "host"' out.txt && grep -qF '"note": null' out.txt && [ ! -s err.txt ] && passed=$((passed + 1)) ||
     complain "solving without a GPU, on the host: $(cat out.txt err.txt)"
