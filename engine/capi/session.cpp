@@ -121,10 +121,12 @@ int palpate_session_create(const palpate_object* object, const palpate_session_s
                            palpate_session** out)
 {
     return guarded([&] {
-        demand(out, "out")       = nullptr;
-        const palpate_object& of = demand(object, "object");
-        *out                     = new palpate_session{SteppedSession(of.object, of.scene, deviceOf(settings))};
-        keepTakeover((*out)->session.takeover());
+        demand(out, "out")            = nullptr;
+        const palpate_object& of      = demand(object, "object");
+        auto                  session = std::unique_ptr<palpate_session>(
+            new palpate_session{SteppedSession(of.object, of.scene, deviceOf(settings))});
+        keepTakeover(session->session.takeover());
+        *out = session.release();
     });
 }
 

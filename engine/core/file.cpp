@@ -93,6 +93,12 @@ std::filesystem::path behindLinks(const std::filesystem::path& path)
         std::error_code             failure;
         const std::filesystem::path target = std::filesystem::read_symlink(next, failure);
         if (failure) refuseToWrite(path, failure.message());
+        struct stat there {
+        }, spelled{}; // those of /proc lead where their text does not
+        if (!ahead.empty() && ::stat(next.c_str(), &there) == 0 &&
+            (::stat((place / target).c_str(), &spelled) != 0 || there.st_dev != spelled.st_dev ||
+             there.st_ino != spelled.st_ino))
+            refuseToWrite(path, next.string() + " leads elsewhere than its text says; name that folder itself");
         ahead.insert(ahead.begin(), target.begin(), target.end()); // an absolute one begins with /, which ends `place`
     }
     return place;
@@ -333,7 +339,8 @@ void appendToFile(const std::filesystem::path& path, std::string_view bytes)
 
 int makeFile(const std::filesystem::path& path)
 {
-    const int handle = ::open(behindLinks(path).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+    const std::filesystem::path place  = behindLinks(path.parent_path()) / path.filename(); // a link itself is refused
+    const int                   handle = ::open(place.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
     if (handle < 0) throw Error(shownPath(path.string()) + ": cannot be made: " + reasonOfErrno());
     return handle;
 }

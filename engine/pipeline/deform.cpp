@@ -846,15 +846,25 @@ std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& 
         return patch.plate.edges == PlateEdges{edge, edge, edge, edge} ? patch.feltStiffness
                                                                        : touch(edge).feltStiffness;
     };
+    const auto filled = [](const Patch& of) {
+        return double(of.nodesWithoutPoint) <= kMostBare * double(of.window.grid.nodes());
+    };
     SupportRange range{felt(Edge::supported), felt(Edge::clamped), 0, held.window};
-    for (range.least = range.supported;; range.width = held.window) {
+    range.least         = range.supported;
+    const double widest = object.cloud().bounds().diagonal();
+    for (bool isFilled = filled(patch); isFilled && kWider * held.window < widest;) {
         held.window *= kWider;
-        const Patch wider = touch(Edge::supported);
-        if (!wider.deformed() || !wider.flatBecause.empty() || !(wider.feltStiffness < kSofter * range.least) ||
-            wider.nodesWithoutPoint > kMostBare * double(wider.window.grid.nodes()))
+        try {
+            const Patch wider = touch(Edge::supported);
+            isFilled = wider.deformed() && filled(wider) && wider.report.converged && wider.flatBecause.empty() &&
+                       wider.feltStiffness < kSofter * range.least;
+            if (isFilled) range.least = wider.feltStiffness;
+        } catch (const Error&) { // what nobody asked for is no error
             return range;
-        range.least = wider.feltStiffness;
+        }
+        if (isFilled) range.width = held.window;
     }
+    return range;
 }
 
 } // namespace palp

@@ -237,7 +237,7 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
     std::string        reach    = "dents of this object, which die away over " + formatQuantity(lengths.typical, "m");
     if (!allOver)
         reach += " on " + std::to_string(std::lround(100 * by.share)) + " % of it and reach far on the rest" +
-                 (settings.theory == Theory::shell ? ", see the support range" : "");
+                 (settings.theory == Theory::shell ? ", see the support range of palpate touch" : "");
     const std::string asked  = reach + ", ask for " + formatQuantity(lengths.window, "m");
     const std::string anyhow = "four radii of the fingertip, because ";
     const double filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kFewestCells;
@@ -264,7 +264,7 @@ Choice chosen(const SoftObject& object, const PatchSettings& settings)
                     ": this width decides what is felt; set a --window, a --foundation or, where the "
                     "surface is curved, --theory shell"};
     const std::string why = "because nothing ends the dents of what is curved one way, against each other or hardly at "
-                            "all; see the support range";
+                            "all; see the support range of palpate touch";
     if (asked.lengths.window >= settings.window) return {settings.window, "the width without auto, " + why};
     if (asked.lengths.window < least) return {least, "four radii of the fingertip, " + why};
     return {asked.lengths.window, "over which most of the surface sags by no more than a fourth, " + why};

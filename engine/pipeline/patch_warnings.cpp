@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include <glm/geometric.hpp>
 
@@ -88,6 +90,25 @@ std::string widerWindow(double width, const PatchSettings& settings)
                                      : "");
 }
 
+/// Returns whether a surface is curved otherwise from place to place: where it is not, as on a tube or a saddle, it lies
+/// off a sphere and has no folds.
+bool varies(const CurvatureField& field)
+{
+    constexpr double kHalf = 0.5; // of the mean curvature's size, in the root of the mean square [1]
+    double           mean = 0, square = 0;
+    for (const auto& [which, counts] : {std::pair{&CurvatureField::x, 1.0}, std::pair{&CurvatureField::z, 1.0},
+                                        std::pair{&CurvatureField::xz, 2.0}}) {
+        const std::vector<double>& values = (field.*which).values();
+        double                     sum    = 0;
+        for (const double value : values) {
+            sum += value;
+            square += counts * value * value / double(values.size());
+        }
+        mean += counts * std::pow(sum / double(values.size()), 2);
+    }
+    return square - mean > kHalf * kHalf * mean;
+}
+
 /// Adds what limits a shell, or what a plate that is no shell leaves out.
 void addCurvature(std::vector<std::string>& result, const Patch& patch, const PatchSettings& settings,
                   const Material& material)
@@ -121,7 +142,7 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
     if (patch.sag > kMostSag + kShown) result.push_back(tooDeep(patch.sag, least / most > kBothWays));
-    if (patch.unrolled > kFolded)
+    if (patch.unrolled > kFolded && varies(*patch.curvature))
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }
 
@@ -140,7 +161,7 @@ void addThick(std::vector<std::string>& result, const Patch& patch)
 }
 
 /// Says where the deflection is beyond the theory: half the thickness, or twice it if large deflections are on.
-void addTooDeep(std::vector<std::string>& result, const Patch& patch, Large large, double deepest, double load)
+void addTooDeep(std::vector<std::string>& result, const Patch& patch, bool mayBeLarge, double deepest, double load)
 {
     const double most = patch.large ? patch.large->reach() : patch.thickness / 2;
     if (!(deepest > most)) return;
@@ -155,7 +176,7 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, Large larg
     result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
                      formatQuantity(most, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
                      formatQuantity(patch.stiffening > 0 ? law.force(less / patch.feltStiffness) : less, "N") +
-                     (large == Large::off && deepest <= 2 * patch.thickness
+                     (mayBeLarge && deepest <= 2 * patch.thickness
                           ? ", or set --large on, which holds to twice the thickness"
                           : ""));
 }
@@ -191,7 +212,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (!patch.report.converged) result.push_back(unconvergedText(patch));
     const double load    = pressOf(patch, material, std::abs(force)).load;
     const double deepest = load * mostResponse(patch);
-    addTooDeep(result, patch, settings.large, deepest, load);
+    addTooDeep(result, patch, settings.large == Large::off && settings.forceLaw == ForceLaw::series, deepest, load);
     addThick(result, patch);
     const bool   whole  = settings.windowOf == WindowOf::object;
     const double window = patch.window.grid.sizeX(); // [m]

@@ -373,8 +373,9 @@ private:
     [[nodiscard]] FootprintSolution solveByEights(const Plate& wanted, std::span<const Footprint> given,
                                                   std::size_t whole, double tolerance, double drawn)
     {
-        if (DirectPlate::pays(wanted, given.size()))
-            if (auto solution = solveDirectly(wanted, given, whole)) return std::move(*solution);
+        if (tolerance < 1 && DirectPlate::pays(wanted, given.size()))
+            if (auto solution = solveDirectly(wanted, given, whole, std::min(drawn, looseFor(tolerance))))
+                return std::move(*solution);
         FootprintSolution solution;
         solution.responses.resize(given.size());
         const auto [alone, setUp] = prepareFootprints(wanted, tolerance, drawn, 1);
@@ -397,8 +398,9 @@ private:
         return solution;
     }
 
+    /// \param error  that the deflection may have [1]
     [[nodiscard]] std::optional<FootprintSolution> solveDirectly(const Plate& wanted, std::span<const Footprint> given,
-                                                                 std::size_t whole)
+                                                                 std::size_t whole, double error)
     {
         if (whyUnsolvable(wanted)) return std::nullopt; // multigrid says so
         if (!direct || !direct->suits(wanted)) {
@@ -406,7 +408,7 @@ private:
             direct.emplace(wanted);
             ++directsMade;
         }
-        return direct->solve(wanted, given, whole);
+        return direct->solve(wanted, given, whole, error);
     }
 
     /// Makes a solver ready for footprints: the one for loads where a deflection is wanted more exactly than works ask

@@ -166,7 +166,8 @@ std::optional<std::string> whyUnsolvable(const Shell& shell)
     if (shell.bending.poissonRatio < 0) return "a shell's Poisson's ratio has to be at least 0";
     if (isStressFree(shell)) return std::nullopt;
     if (whyUnsolvable(membraneOf(shell))) // only its edges are left as a reason
-        return "the edges leave its membrane free to move: let all four be free or hold two neighbouring sides";
+        return "its stresses are held on too few sides, beside those that are clamped or guided; clamp all four, or "
+               "let two neighbouring ones be supported";
     return std::nullopt;
 }
 

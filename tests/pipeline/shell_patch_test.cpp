@@ -412,7 +412,13 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     };
     const auto lengths = [](double count) { return [=](Patch& p) { p.shellLength = kShell.window / count; }; };
     const auto curved  = [](double most, double least) { return [=](Patch& p) { p.principal = {most, least}; }; };
-    const auto folded  = [](double share) { return [=](Patch& p) { p.unrolled = share; }; };
+    const auto folded  = [](double share, std::size_t every = 2) {
+        return [=](Patch& p) {
+            p.unrolled = share;
+            auto& bend = p.curvature->x.values();
+            for (std::size_t n = 0; n < bend.size(); n += every) bend[n] = -bend[n]; // to both sides
+        };
+    };
     EXPECT_FALSE(says("lengths of the shell wide", lengths(7.61)));
     EXPECT_TRUE(says("is 7.5 lengths of the shell wide", lengths(7.5)));
     EXPECT_TRUE(says(("try a --window of " + formatQuantity(80e-3, "m")).c_str(), lengths(4)));
@@ -445,6 +451,7 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     EXPECT_TRUE(says("no thin sheet", thick(10.1e-3))) << "beside a window of 40 mm";
     EXPECT_FALSE(says("folds", folded(0.49)));
     EXPECT_TRUE(says("folds", folded(0.51)));
+    EXPECT_FALSE(says("folds", folded(0.51, 100000))) << "as on a tube, which lies off its sphere too";
     const auto wide = [&](Patch& p) { // how an object is held matters more there than the window does
         curved(20, 0.3)(p);
         lengths(4)(p);

@@ -114,6 +114,20 @@ TEST(MultigridShellSolver, TakesAsManyStepsOnFineGridsAndStrongCurvatures)
             }
 }
 
+TEST(MultigridShellSolver, TakesNoMoreStepsOnGridsOfAQuarterOfAMillionNodes)
+{
+    const std::vector<std::pair<std::string, Bend>> bends = {
+        {"sphere", constant(1, 1, 0)}, {"cylinder", constant(1, 0, 0)}, {"saddle", constant(1, -1, 0)}};
+    for (const auto& [cells, kinds] : {std::pair{256, 3}, std::pair{512, 1}})
+        for (int kind = 0; kind < kinds; ++kind) {
+            const auto& [name, bend] = bends[std::size_t(kind)];
+            const NodeField   load   = fingertip(square(cells));
+            const std::string where  = name + ", " + std::to_string(cells) + " cells";
+            EXPECT_LE(stepsTo(1e-4, shellOf(square(cells), wart(100), bend, 12), load), 4) << where;
+            EXPECT_LE(stepsTo(1e-4, shellOf(square(cells), disc(100), bend, 12), load), 7) << where;
+        }
+}
+
 /// A curvature that changes its sign from patch to patch, an eighth of the window wide, as fits to points may give it.
 Map randomPatches(std::mt19937& random)
 {

@@ -18,9 +18,6 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// Most that a step of refinement may change, in the energy norm [1]: works are wrong by the square of what it leaves.
-constexpr double kMostError = 1e-4;
-
 double millisecondsFrom(Clock::time_point began)
 {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
@@ -40,7 +37,7 @@ bool DirectPlate::pays(const Plate& plate, std::size_t footprints)
     // with the nodes than the rest does.
     constexpr double kUsual = 24, kStrong = 6, kStrongContrast = 3000, kLeastContrast = 30, kNodes = 65.0 * 65.0;
     const double     least = double(plate.grid.nodes()) / kNodes;
-    if (double(footprints) < kStrong * least) return false;
+    if (double(footprints) < kStrong * least || !plate.rigidity.on(plate.grid)) return false;
     const double contrast = contrastOf(plate);
     return double(footprints) >= (contrast > kStrongContrast ? kStrong : kUsual) * least &&
            contrast >= kLeastContrast && largestJump(plate) > double(shared::kJump);
@@ -68,8 +65,11 @@ bool DirectPlate::suits(const Plate& plate) const
 }
 
 std::optional<FootprintSolution> DirectPlate::solve(const Plate& plate, std::span<const Footprint> footprints,
-                                                    std::size_t whole)
+                                                    std::size_t whole, double error)
 {
+    for (const Footprint& footprint : footprints)
+        for (const Footprint::Part& part : footprint.parts)
+            PALP_EXPECT(part.node < plate.grid.nodes(), "a footprint lies on nodes that the plate does not have");
     const auto began = Clock::now();
     if (!factor(plate)) return std::nullopt;
     const double      setUp = millisecondsFrom(began);
@@ -91,7 +91,8 @@ std::optional<FootprintSolution> DirectPlate::solve(const Plate& plate, std::spa
     const bool finite                       = std::ranges::all_of(solution.responses, [](const FootprintResponse& of) {
         return std::isfinite(of.work) && std::isfinite(of.changeX) && std::isfinite(of.changeZ);
     });
-    return finite && solution.whole.report.converged ? std::optional(std::move(solution)) : std::nullopt;
+    if (!finite || !(*solution.whole.report.errorEstimate <= error)) return std::nullopt;
+    return solution;
 }
 
 bool DirectPlate::factor(const Plate& plate)
@@ -136,7 +137,6 @@ PlateSolution DirectPlate::solveWhole(const Plate& plate, const Footprint& footp
     solution.report.iterations    = 0;
     const double error            = gain[0] > 0 ? std::sqrt(std::max(gain[1], 0.0) / gain[0]) : 0;
     solution.report.errorEstimate = std::hypot(error, kRounding);
-    solution.report.converged     = error < kMostError;
     return solution;
 }
 

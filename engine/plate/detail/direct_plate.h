@@ -32,11 +32,12 @@ public:
 
     [[nodiscard]] bool suits(const Plate& plate) const; ///< whether solve() can take it
 
-    /// \param whole  index of the load whose deflection is wanted
-    /// \return nothing if a number is not finite, or if rounding hides how a part of the plate is held
+    /// \param whole  index of the load whose deflection is wanted, and of which the report is
+    /// \param error  that it may have, relative in the energy norm, as a step of refinement tells it [1]
+    /// \return nothing if it has more, if a number is not finite, or if rounding hides how a part of the plate is held
     /// \throws Error if whyUnsolvable() refuses the rigidity
     [[nodiscard]] std::optional<FootprintSolution> solve(const Plate& plate, std::span<const Footprint> footprints,
-                                                         std::size_t whole);
+                                                         std::size_t whole, double error);
 
 private:
     [[nodiscard]] bool factor(const Plate& plate);
