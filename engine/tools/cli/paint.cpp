@@ -153,7 +153,7 @@ struct StrokeAccount {
                  counted(report.points, "point") + ", " +
                  (order.value        ? "towards " + formatQuantity(*order.value, unit)
                   : order.stiffening ? "stiffening towards " + formatQuantity(*order.stiffening, "1/m")
-                  : order.held       ? "held towards " + formatNumber(*order.held)
+                  : order.held       ? "held towards " + shortNumber(*order.held)
                                      : "smoothing") +
                  "\n";
     }
