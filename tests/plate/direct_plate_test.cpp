@@ -1,4 +1,4 @@
-#include "engine/plate/detail/direct_plate.h"
+#include "engine/plate/multigrid/direct_plate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,13 +1,10 @@
 #pragma once
 #include <cstddef>
-#include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
-#include <vector>
 
 #include "engine/plate/footprint.h"
-#include "engine/plate/multigrid/detail/grid_hierarchy.h"
-#include "engine/plate/multigrid/detail/rim.h"
 #include "engine/plate/plate.h"
 #include "engine/plate/plate_solver.h"
 
@@ -29,6 +26,9 @@ public:
 
     /// Divides the nodes of a grid; all but the values of rigidity and foundation are for good.
     explicit DirectPlate(const Plate& plate);
+    ~DirectPlate();
+    DirectPlate(DirectPlate&&) noexcept;
+    DirectPlate& operator=(DirectPlate&&) noexcept;
 
     [[nodiscard]] bool suits(const Plate& plate) const; ///< whether solve() can take it
 
@@ -40,23 +40,8 @@ public:
                                                          std::size_t whole, double error);
 
 private:
-    [[nodiscard]] bool factor(const Plate& plate);
-    /// Solves for the load whose deflection is wanted, with a step of refinement.
-    [[nodiscard]] PlateSolution solveWhole(const Plate& plate, const Footprint& footprint);
-    /// Solves for up to eight others.
-    void solveEight(std::span<const Footprint> footprints, std::span<const std::size_t> which,
-                    std::vector<FootprintResponse>& responses);
-    void findNeeded(std::span<const Footprint> footprints, std::span<const std::size_t> which);
-
-    Plate                     plate_; ///< without its rigidity
-    double                    unit_;  ///< that rigidities are relative to [N m]
-    GridHierarchy             grid_;
-    Rim                       all_;
-    RimView                   view_{};
-    std::vector<int>          frontOf_;  ///< by unknown
-    std::vector<float>        rigidity_; ///< relative to unit_, then the foundation's shape [1]
-    std::vector<double>       numbers_;  ///< of eight loads at each unknown
-    std::vector<std::uint8_t> needed_;   ///< by front
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
 };
 
 } // namespace palp

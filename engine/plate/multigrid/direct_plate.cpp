@@ -1,8 +1,10 @@
-#include "engine/plate/detail/direct_plate.h"
+#include "engine/plate/multigrid/direct_plate.h"
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "compute_shaders/shared/plate_push.h"
 #include "compute_shaders/shared/tile_layout.h"
@@ -12,6 +14,8 @@
 #include "engine/plate/detail/hard_plates.h"
 #include "engine/plate/detail/rigidity_unit.h"
 #include "engine/plate/host/host_kernels.h"
+#include "engine/plate/multigrid/detail/grid_hierarchy.h"
+#include "engine/plate/multigrid/detail/rim.h"
 
 namespace palp {
 namespace {
@@ -31,6 +35,30 @@ void run(compute::HostKernel kernel, const shared::PlateLevel& level, std::initi
 
 } // namespace
 
+struct DirectPlate::Impl {
+    Plate                     plate_; ///< without its rigidity
+    double                    unit_;  ///< that rigidities are relative to [N m]
+    GridHierarchy             grid_;
+    Rim                       all_;
+    RimView                   view_{};
+    std::vector<int>          frontOf_;  ///< by unknown
+    std::vector<float>        rigidity_; ///< relative to unit_, then the foundation's shape [1]
+    std::vector<double>       numbers_;  ///< of eight loads at each unknown
+    std::vector<std::uint8_t> needed_;   ///< by front
+
+    explicit Impl(const Plate& plate);
+    [[nodiscard]] bool                             suits(const Plate& plate) const;
+    [[nodiscard]] std::optional<FootprintSolution> solve(const Plate& plate, std::span<const Footprint> footprints,
+                                                         std::size_t whole, double error);
+    [[nodiscard]] bool                             factor(const Plate& plate);
+    /// Solves for the load whose deflection is wanted, with a step of refinement.
+    [[nodiscard]] PlateSolution solveWhole(const Plate& plate, const Footprint& footprint);
+    /// Solves for up to eight others.
+    void solveEight(std::span<const Footprint> footprints, std::span<const std::size_t> which,
+                    std::vector<FootprintResponse>& responses);
+    void findNeeded(std::span<const Footprint> footprints, std::span<const std::size_t> which);
+};
+
 bool DirectPlate::pays(const Plate& plate, std::size_t footprints)
 {
     // Footprints from which it pays at 65 x 65 nodes, by the contrast of a rigidity that jumps; a factor grows faster
@@ -43,7 +71,7 @@ bool DirectPlate::pays(const Plate& plate, std::size_t footprints)
            contrast >= kLeastContrast && largestJump(plate) > double(shared::kJump);
 }
 
-DirectPlate::DirectPlate(const Plate& plate)
+DirectPlate::Impl::Impl(const Plate& plate)
     : plate_(plate), unit_(rigidityUnit(extremesOf(plate.rigidity.values()).most)), grid_(gridHierarchy(plate, unit_))
 {
     plate_.rigidity = {};
@@ -56,7 +84,7 @@ DirectPlate::DirectPlate(const Plate& plate)
     needed_.resize(std::size_t(view_.frontCount));
 }
 
-bool DirectPlate::suits(const Plate& plate) const
+bool DirectPlate::Impl::suits(const Plate& plate) const
 {
     return plate.grid == plate_.grid && plate.edges == plate_.edges && plate.poissonRatio == plate_.poissonRatio &&
            plate.foundation == plate_.foundation &&
@@ -64,8 +92,8 @@ bool DirectPlate::suits(const Plate& plate) const
            isUnitOf(unit_, extremesOf(plate.rigidity.values()));
 }
 
-std::optional<FootprintSolution> DirectPlate::solve(const Plate& plate, std::span<const Footprint> footprints,
-                                                    std::size_t whole, double error)
+std::optional<FootprintSolution> DirectPlate::Impl::solve(const Plate& plate, std::span<const Footprint> footprints,
+                                                          std::size_t whole, double error)
 {
     for (const Footprint& footprint : footprints)
         for (const Footprint::Part& part : footprint.parts)
@@ -95,7 +123,7 @@ std::optional<FootprintSolution> DirectPlate::solve(const Plate& plate, std::spa
     return solution;
 }
 
-bool DirectPlate::factor(const Plate& plate)
+bool DirectPlate::Impl::factor(const Plate& plate)
 {
     const std::size_t nodes = plate.grid.nodes();
     const auto&       shape = plate.foundationShape.values();
@@ -107,7 +135,7 @@ bool DirectPlate::factor(const Plate& plate)
     return lost == 0;
 }
 
-PlateSolution DirectPlate::solveWhole(const Plate& plate, const Footprint& footprint)
+PlateSolution DirectPlate::Impl::solveWhole(const Plate& plate, const Footprint& footprint)
 {
     const shared::PlateLevel& level   = grid_.levels.front().plate;
     const HostKernels&        kernels = *hostVariant().kernels;
@@ -140,8 +168,8 @@ PlateSolution DirectPlate::solveWhole(const Plate& plate, const Footprint& footp
     return solution;
 }
 
-void DirectPlate::solveEight(std::span<const Footprint> footprints, std::span<const std::size_t> which,
-                             std::vector<FootprintResponse>& responses)
+void DirectPlate::Impl::solveEight(std::span<const Footprint> footprints, std::span<const std::size_t> which,
+                                   std::vector<FootprintResponse>& responses)
 {
     findNeeded(footprints, which);
     std::ranges::fill(numbers_, 0.0);
@@ -161,7 +189,7 @@ void DirectPlate::solveEight(std::span<const Footprint> footprints, std::span<co
         }
 }
 
-void DirectPlate::findNeeded(std::span<const Footprint> footprints, std::span<const std::size_t> which)
+void DirectPlate::Impl::findNeeded(std::span<const Footprint> footprints, std::span<const std::size_t> which)
 {
     std::ranges::fill(needed_, std::uint8_t(0));
     for (const std::size_t n : which)
@@ -173,6 +201,22 @@ void DirectPlate::findNeeded(std::span<const Footprint> footprints, std::span<co
         for (int m = 0; m < front.border; ++m)
             needed_[std::size_t(frontOf_[std::size_t(view_.borders[front.borderAt + m])])] = 1;
     }
+}
+
+DirectPlate::DirectPlate(const Plate& plate) : impl_(std::make_unique<Impl>(plate)) {}
+DirectPlate::~DirectPlate()                                 = default;
+DirectPlate::DirectPlate(DirectPlate&&) noexcept            = default;
+DirectPlate& DirectPlate::operator=(DirectPlate&&) noexcept = default;
+
+bool DirectPlate::suits(const Plate& plate) const
+{
+    return impl_->suits(plate);
+}
+
+std::optional<FootprintSolution> DirectPlate::solve(const Plate& plate, std::span<const Footprint> footprints,
+                                                    std::size_t whole, double error)
+{
+    return impl_->solve(plate, footprints, whole, error);
 }
 
 } // namespace palp
