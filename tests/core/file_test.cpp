@@ -291,7 +291,7 @@ protected:
         EXPECT_EQ(std::distance(std::filesystem::directory_iterator(mine_), {}), 1);
     }
 
-    const std::filesystem::path mine_ = folder_ / "mine", shared_ = folder_ / "shared";
+    const std::filesystem::path mine_ = folder_ / "mine", shared_ = folder_ / "everybodys";
 };
 
 TEST_F(FilesBesideStrangers, ALinkInTheMiddleOfAPathIsRefused)
@@ -301,16 +301,16 @@ TEST_F(FilesBesideStrangers, ALinkInTheMiddleOfAPathIsRefused)
     expectAllRefused(shared_ / "out");
     expectAllRefused(shared_ / "far" / "mine");
     expectAllRefused(std::filesystem::proximate(shared_) / "out");
-    expectAllRefused(shared_ / ".." / "shared" / "." / "out");
+    expectAllRefused(shared_ / ".." / "everybodys" / "." / "out");
 }
 
 TEST_F(FilesBesideStrangers, ALinkBehindOwnLinksIsRefused)
 {
     linkOf(kStranger, shared_ / "out", mine_);
-    std::filesystem::create_symlink("shared/out", folder_ / "relative");
+    std::filesystem::create_symlink("everybodys/out", folder_ / "relative");
     std::filesystem::create_symlink(shared_ / "out" / "", folder_ / "absolute");
-    std::filesystem::create_symlink("../shared/../relative", shared_ / "chain");
-    for (const char* const first : {"relative", "absolute", "shared/chain"}) expectAllRefused(folder_ / first);
+    std::filesystem::create_symlink("../everybodys/../relative", shared_ / "chain");
+    for (const char* const first : {"relative", "absolute", "everybodys/chain"}) expectAllRefused(folder_ / first);
 }
 
 TEST_F(FilesBesideStrangers, ALinkThatIsReachedByANewFolderIsRefused)
