@@ -36,15 +36,15 @@ void run(compute::HostKernel kernel, const shared::PlateLevel& level, std::initi
 } // namespace
 
 struct DirectPlate::Impl {
-    Plate                     plate_; ///< without its rigidity
-    double                    unit_;  ///< that rigidities are relative to [N m]
-    GridHierarchy             grid_;
-    Rim                       all_;
-    RimView                   view_{};
-    std::vector<int>          frontOf_;  ///< by unknown
-    std::vector<float>        rigidity_; ///< relative to unit_, then the foundation's shape [1]
-    std::vector<double>       numbers_;  ///< of eight loads at each unknown
-    std::vector<std::uint8_t> needed_;   ///< by front
+    Plate                     like; ///< without its rigidity
+    double                    unit; ///< that rigidities are relative to [N m]
+    GridHierarchy             hierarchy;
+    Rim                       division;
+    RimView                   view{};
+    std::vector<int>          frontOf;  ///< by unknown
+    std::vector<float>        rigidity; ///< relative to unit, then the foundation's shape [1]
+    std::vector<double>       numbers;  ///< of eight loads at each unknown
+    std::vector<std::uint8_t> needed;   ///< by front
 
     explicit Impl(const Plate& plate);
     [[nodiscard]] bool                             suits(const Plate& plate) const;
@@ -72,24 +72,24 @@ bool DirectPlate::pays(const Plate& plate, std::size_t footprints)
 }
 
 DirectPlate::Impl::Impl(const Plate& plate)
-    : plate_(plate), unit_(rigidityUnit(extremesOf(plate.rigidity.values()).most)), grid_(gridHierarchy(plate, unit_))
+    : like(plate), unit(rigidityUnit(extremesOf(plate.rigidity.values()).most)), hierarchy(gridHierarchy(plate, unit))
 {
-    plate_.rigidity = {};
-    all_.divideAll(grid_.levels.front().plate);
-    view_ = all_.prepare(true);
-    frontOf_.resize(std::size_t(view_.unknowns));
-    for (int n = 0; n < view_.frontCount; ++n)
-        std::fill_n(frontOf_.begin() + view_.fronts[n].first, view_.fronts[n].own, n);
-    numbers_.resize(std::size_t(view_.unknowns) * kLoadsTogether);
-    needed_.resize(std::size_t(view_.frontCount));
+    like.rigidity = {};
+    division.divideAll(hierarchy.levels.front().plate);
+    view = division.prepare(true);
+    frontOf.resize(std::size_t(view.unknowns));
+    for (int n = 0; n < view.frontCount; ++n)
+        std::fill_n(frontOf.begin() + view.fronts[n].first, view.fronts[n].own, n);
+    numbers.resize(std::size_t(view.unknowns) * kLoadsTogether);
+    needed.resize(std::size_t(view.frontCount));
 }
 
 bool DirectPlate::Impl::suits(const Plate& plate) const
 {
-    return plate.grid == plate_.grid && plate.edges == plate_.edges && plate.poissonRatio == plate_.poissonRatio &&
-           plate.foundation == plate_.foundation &&
-           plate.foundationShape.values().size() == plate_.foundationShape.values().size() &&
-           isUnitOf(unit_, extremesOf(plate.rigidity.values()));
+    return plate.grid == like.grid && plate.edges == like.edges && plate.poissonRatio == like.poissonRatio &&
+           plate.foundation == like.foundation &&
+           plate.foundationShape.values().size() == like.foundationShape.values().size() &&
+           isUnitOf(unit, extremesOf(plate.rigidity.values()));
 }
 
 std::optional<FootprintSolution> DirectPlate::Impl::solve(const Plate& plate, std::span<const Footprint> footprints,
@@ -127,40 +127,40 @@ bool DirectPlate::Impl::factor(const Plate& plate)
 {
     const std::size_t nodes = plate.grid.nodes();
     const auto&       shape = plate.foundationShape.values();
-    rigidity_.resize(nodes + shape.size());
-    inRigidityUnits(plate.rigidity.values(), unit_, std::span(rigidity_).first(nodes));
-    std::ranges::transform(shape, rigidity_.begin() + std::ptrdiff_t(nodes), [](double s) { return float(s); });
+    rigidity.resize(nodes + shape.size());
+    inRigidityUnits(plate.rigidity.values(), unit, std::span(rigidity).first(nodes));
+    std::ranges::transform(shape, rigidity.begin() + std::ptrdiff_t(nodes), [](double s) { return float(s); });
     std::uint32_t lost = 1;
-    run(hostVariant().kernels->rimFactor, grid_.levels.front().plate, {&view_, rigidity_.data(), &lost});
+    run(hostVariant().kernels->rimFactor, hierarchy.levels.front().plate, {&view, rigidity.data(), &lost});
     return lost == 0;
 }
 
 PlateSolution DirectPlate::Impl::solveWhole(const Plate& plate, const Footprint& footprint)
 {
-    const shared::PlateLevel& level   = grid_.levels.front().plate;
+    const shared::PlateLevel& level   = hierarchy.levels.front().plate;
     const HostKernels&        kernels = *hostVariant().kernels;
     const std::size_t         nodes   = plate.grid.nodes();
-    std::vector<double>       left(nodes, 0.0), x(std::size_t(view_.unknowns));
+    std::vector<double>       left(nodes, 0.0), x(std::size_t(view.unknowns));
     std::vector<double>       sum(nodes + 2, 0.0), resists(nodes); // rows of the operator may read beside a field
     double* const             w = sum.data() + 1;
     for (const Footprint::Part& part : footprint.parts) left[part.node] = part.force;
     const auto force = left;
     double     gain[2]{}; // squared errors that a solve takes away, in the energy norm
     for (double& squared : gain) {
-        for (std::size_t n = 0; n < x.size(); ++n) x[n] = left[std::size_t(view_.nodes[n])];
-        run(kernels.rimSolve, level, {&view_, x.data(), nullptr});
+        for (std::size_t n = 0; n < x.size(); ++n) x[n] = left[std::size_t(view.nodes[n])];
+        run(kernels.rimSolve, level, {&view, x.data(), nullptr});
         for (std::size_t n = 0; n < x.size(); ++n) {
-            squared += x[n] * left[std::size_t(view_.nodes[n])];
-            w[view_.nodes[n]] += x[n];
+            squared += x[n] * left[std::size_t(view.nodes[n])];
+            w[view.nodes[n]] += x[n];
         }
-        run(kernels.apply_f64, level, {rigidity_.data(), w, resists.data()});
+        run(kernels.apply_f64, level, {rigidity.data(), w, resists.data()});
         for (std::size_t n = 0; n < nodes; ++n) left[n] = force[n] - resists[n];
     }
 
     constexpr double kRounding = 1e-7; // of the rigidity in floats [1]
     PlateSolution    solution;
     solution.deflection = NodeField(plate.grid);
-    for (std::size_t n = 0; n < nodes; ++n) solution.deflection.values()[n] = w[n] / grid_.stiffness;
+    for (std::size_t n = 0; n < nodes; ++n) solution.deflection.values()[n] = w[n] / hierarchy.stiffness;
     solution.report.solver        = compute::kHostProcessor;
     solution.report.iterations    = 0;
     const double error            = gain[0] > 0 ? std::sqrt(std::max(gain[1], 0.0) / gain[0]) : 0;
@@ -172,16 +172,16 @@ void DirectPlate::Impl::solveEight(std::span<const Footprint> footprints, std::s
                                    std::vector<FootprintResponse>& responses)
 {
     findNeeded(footprints, which);
-    std::ranges::fill(numbers_, 0.0);
-    const auto place = [&](const Footprint::Part& part) { return std::ptrdiff_t(view_.numbers[part.node]); };
+    std::ranges::fill(numbers, 0.0);
+    const auto place = [&](const Footprint::Part& part) { return std::ptrdiff_t(view.numbers[part.node]); };
     for (std::size_t n = 0; n < which.size(); ++n)
         for (const Footprint::Part& part : footprints[which[n]].parts)
-            if (place(part) >= 0) numbers_[std::size_t(place(part)) * kLoadsTogether + n] = part.force;
-    run(hostVariant().together->rimSolve, grid_.levels.front().plate, {&view_, numbers_.data(), needed_.data()});
+            if (place(part) >= 0) numbers[std::size_t(place(part)) * kLoadsTogether + n] = part.force;
+    run(hostVariant().together->rimSolve, hierarchy.levels.front().plate, {&view, numbers.data(), needed.data()});
     for (std::size_t n = 0; n < which.size(); ++n)
         for (const Footprint::Part& part : footprints[which[n]].parts) {
             if (place(part) < 0) continue;
-            const double       w  = numbers_[std::size_t(place(part)) * kLoadsTogether + n] / grid_.stiffness;
+            const double       w  = numbers[std::size_t(place(part)) * kLoadsTogether + n] / hierarchy.stiffness;
             FootprintResponse& of = responses[which[n]];
             of.work += part.force * w;
             of.changeX += part.changeX * w;
@@ -191,15 +191,15 @@ void DirectPlate::Impl::solveEight(std::span<const Footprint> footprints, std::s
 
 void DirectPlate::Impl::findNeeded(std::span<const Footprint> footprints, std::span<const std::size_t> which)
 {
-    std::ranges::fill(needed_, std::uint8_t(0));
+    std::ranges::fill(needed, std::uint8_t(0));
     for (const std::size_t n : which)
         for (const Footprint::Part& part : footprints[n].parts)
-            if (const int unknown = view_.numbers[part.node]; unknown >= 0) needed_[frontOf_[std::size_t(unknown)]] = 1;
-    for (int n = 0; n < view_.frontCount; ++n) {
-        if (!needed_[std::size_t(n)]) continue;
-        const RimFront& front = view_.fronts[n];
+            if (const int unknown = view.numbers[part.node]; unknown >= 0) needed[frontOf[std::size_t(unknown)]] = 1;
+    for (int n = 0; n < view.frontCount; ++n) {
+        if (!needed[std::size_t(n)]) continue;
+        const RimFront& front = view.fronts[n];
         for (int m = 0; m < front.border; ++m)
-            needed_[std::size_t(frontOf_[std::size_t(view_.borders[front.borderAt + m])])] = 1;
+            needed[std::size_t(frontOf[std::size_t(view.borders[front.borderAt + m])])] = 1;
     }
 }
 
