@@ -29,7 +29,7 @@ public:
     NeighbourIndex& operator=(NeighbourIndex&&) noexcept;
 
     /// Replaces `found` by the points within `radius` [m] of `centre` [m], distance <= radius; infinity is legal.
-    /// The order is fixed for a given cloud and kind of processor, but otherwise unspecified: near points do not come
+    /// The order is fixed for a given cloud and version of Embree, but otherwise unspecified: near points do not come
     /// first. Allocates only if the capacity of `found` does not suffice.
     void gather(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
 
