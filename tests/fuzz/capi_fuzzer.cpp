@@ -9,7 +9,7 @@
 #include "engine/capi/palpate.h"
 #include "tests/fuzz/fuzz_expect.h"
 
-// What a program in another language hands over: the first byte says which of four things the others are. Arrays are as
+// What a program in another language hands over: the first byte says which of these things the others are. Arrays are as
 // long as they claim to be, because nothing else can be checked in C.
 
 namespace {
@@ -69,6 +69,13 @@ std::vector<double> sheet()
     return rows;
 }
 
+/// Its object.
+const palpate_object* theSheet()
+{
+    static palpate_object* const object = objectOf(sheet(), kScene);
+    return object;
+}
+
 void touchPoints(Bytes bytes)
 {
     std::vector<double> rows;
@@ -84,6 +91,83 @@ void touchPoints(Bytes bytes)
     palpate_object_destroy(object);
 }
 
+/// Numbers of either type, so many for each of some points, at a stride.
+class Array {
+public:
+    Array(Bytes& bytes, std::size_t points, std::size_t perPoint)
+    {
+        const auto how  = bytes.next<std::uint8_t>();
+        type            = how & 1 ? PALPATE_FLOAT32 : PALPATE_FLOAT64;
+        isThere         = (how & 2) != 0;
+        stride          = how & 4 ? perPoint * size() + (how >> 4) : 0;
+        const auto step = stride == 0 ? perPoint * size() : stride;
+        held_.resize(points * step);
+        for (std::size_t n = 0; isThere && n < points; ++n)
+            for (std::size_t k = 0; k < perPoint * size(); ++k) held_[n * step + k] = bytes.next<std::uint8_t>();
+    }
+    [[nodiscard]] const void* data() const { return isThere ? held_.data() : nullptr; }
+
+    int         type    = PALPATE_FLOAT64;
+    bool        isThere = false;
+    std::size_t stride  = 0; ///< [bytes]
+
+private:
+    [[nodiscard]] std::size_t size() const { return type == PALPATE_FLOAT32 ? sizeof(float) : sizeof(double); }
+
+    std::vector<std::uint8_t> held_;
+};
+
+/// Reads back what an object was made of.
+void readBack(const palpate_object* object)
+{
+    const std::size_t   size = palpate_object_size(object);
+    std::vector<double> xyz(3 * size), stiffness(size);
+    palp::fuzzExpect(palpate_object_positions(object, xyz.data(), size) == PALPATE_OK);
+    palp::fuzzExpect(palpate_object_stiffness(object, stiffness.data(), size) == PALPATE_OK);
+    palp::fuzzExpect(palpate_object_positions(object, xyz.data(), size - 1) == PALPATE_REFUSED);
+    for (const double value : xyz) palp::fuzzExpect(std::isfinite(value));
+    for (const double value : stiffness) palp::fuzzExpect(std::isfinite(value) && value > 0);
+    std::size_t needed = 0;
+    palp::fuzzExpect(palpate_object_scene(object, nullptr, 0, &needed) == PALPATE_OK);
+    std::string text(needed, '?');
+    palp::fuzzExpect(palpate_object_scene(object, text.data(), needed - 1, &needed) == PALPATE_REFUSED);
+    palp::fuzzExpect(palpate_object_scene(object, text.data(), needed, &needed) == PALPATE_OK && text.back() == '\0');
+}
+
+void readArrays(Bytes bytes)
+{
+    constexpr std::size_t kMost  = 64; // points
+    auto                  points = PALPATE_INIT(palpate_points);
+    points.count                 = bytes.next<std::uint8_t>() % kMost;
+    points.stiffness_kind        = bytes.next<std::int8_t>();
+    points.uniform_stiffness     = bytes.next<float>();
+    points.face_count            = bytes.next<std::uint8_t>() % kMost;
+    const Array positions(bytes, points.count, 3), stiffness(bytes, points.count, 1), normals(bytes, points.count, 3);
+    const Array stiffening(bytes, points.count, 1), foundation(bytes, points.count, 1);
+    std::vector<std::uint32_t> faces(3 * points.face_count);
+    for (std::uint32_t& corner : faces) corner = bytes.next<std::uint8_t>();
+    points.positions         = positions.data();
+    points.position_type     = positions.type;
+    points.position_stride   = positions.stride;
+    points.stiffness         = stiffness.data();
+    points.stiffness_type    = stiffness.type;
+    points.stiffness_stride  = stiffness.stride;
+    points.normals           = normals.data();
+    points.normal_type       = normals.type;
+    points.normal_stride     = normals.stride;
+    points.stiffening        = stiffening.data();
+    points.stiffening_type   = stiffening.type;
+    points.stiffening_stride = stiffening.stride;
+    points.foundation        = foundation.data();
+    points.foundation_type   = foundation.type;
+    points.foundation_stride = foundation.stride;
+    points.faces             = faces.data();
+    palpate_object* object   = nullptr;
+    if (!isDone(palpate_object_from_points(&points, kScene, &object))) return;
+    readBack(object);
+    palpate_object_destroy(object);
+}
+
 void makeOfScene(const Bytes& bytes)
 {
     palpate_object_destroy(objectOf(sheet(), bytes.text().c_str()));
@@ -91,10 +175,12 @@ void makeOfScene(const Bytes& bytes)
 
 void step(Bytes bytes)
 {
-    static palpate_object* const object  = objectOf(sheet(), kScene);
-    palpate_session*             session = nullptr;
+    const palpate_object* const object  = theSheet();
+    palpate_session*            session = nullptr;
     palp::fuzzExpect(palpate_session_create(object, nullptr, &session) == PALPATE_OK);
-    double time = 0;
+    double              time     = 0;
+    std::uint64_t       sequence = 0;
+    std::vector<double> xyz(3 * palpate_object_size(object));
     while (bytes.left() > 0) {
         auto hand   = PALPATE_INIT(palpate_hand);
         auto answer = PALPATE_INIT(palpate_answer);
@@ -108,8 +194,86 @@ void step(Bytes bytes)
         const double force = std::hypot(answer.force[0], answer.force[1], answer.force[2]);
         palp::fuzzExpect(force <= 6.0 + 1e-9 &&
                          (force == 0 || !(answer.flags & PALPATE_BAD_INPUT))); // NaN is not below
+        std::array<char, 4096> words{};
+        palp::fuzzExpect(palpate_session_words(session, words.data(), words.size()) == PALPATE_OK);
+        palp::fuzzExpectSentence(words.data());
+        palp::fuzzExpect(palpate_session_takeover(session, words.data(), words.size()) == PALPATE_OK);
+        palp::fuzzExpect(palpate_session_deformed(session, xyz.data(), xyz.size() / 3, &sequence) == PALPATE_OK);
+        for (const double x : xyz) palp::fuzzExpect(std::isfinite(x));
     }
     palpate_session_destroy(session);
+}
+
+/// Displaced points under a force, and felt maps of places with and without directions.
+void touchSheet(Bytes bytes)
+{
+    const std::size_t   size = palpate_object_size(theSheet());
+    std::vector<double> xyz(3 * size);
+    const auto          force = bytes.next<double>();
+    std::vector<double> places, from;
+    while (bytes.left() >= 6 * sizeof(double)) {
+        for (int n = 0; n < 3; ++n) places.push_back(bytes.next<double>());
+        for (int n = 0; n < 3; ++n) from.push_back(bytes.next<double>());
+    }
+    if (places.empty()) return;
+    if (isDone(palpate_touch_displaced(theSheet(), places.data(), from.data(), force, xyz.data(), size)))
+        for (const double x : xyz) palp::fuzzExpect(std::isfinite(x));
+    for (const double* const side : {static_cast<const double*>(nullptr), static_cast<const double*>(from.data())}) {
+        std::vector<double> felt(places.size() / 3);
+        std::size_t         failed = 0, none = 0;
+        if (!isDone(palpate_felt_map(theSheet(), places.data(), side, felt.size(), felt.data(), &failed))) continue;
+        for (const double value : felt) none += std::isnan(value);
+        palp::fuzzExpect(none == failed);
+    }
+}
+
+void mapEvery(Bytes bytes)
+{
+    std::vector<double> felt(palpate_object_size(theSheet()));
+    std::size_t         touched = 0;
+    const auto          spacing = bytes.next<double>();
+    if (!isDone(palpate_felt_map_every(theSheet(), spacing, felt.data(), felt.size(), &touched))) return;
+    palp::fuzzExpect(touched <= felt.size());
+    for (const double value : felt) palp::fuzzExpect(value > 0);
+}
+
+/// A prediction along a path: of three places, as it takes longest.
+void perceive(Bytes bytes)
+{
+    constexpr int kPlaces = 3;
+    auto          path    = PALPATE_INIT(palpate_path);
+    double        three[3][3];
+    const auto    which = bytes.next<std::uint8_t>();
+    path.places         = bytes.next<std::int8_t>();
+    if (path.places == 0 || path.places > kPlaces) path.places = kPlaces;
+    path.reach = bytes.next<double>();
+    for (auto& vector : three)
+        for (double& part : vector) part = bytes.next<double>();
+    path.place     = which & 1 ? three[0] : nullptr;
+    path.from      = which & 2 ? three[1] : nullptr;
+    path.direction = which & 4 ? three[2] : nullptr;
+    std::array<double, kPlaces> along{}, felt{};
+    auto                        result = PALPATE_INIT(palpate_perception);
+    if (!isDone(palpate_perceive(theSheet(), &path, &result, along.data(), felt.data(), kPlaces))) return;
+    palp::fuzzExpect(result.softest > 0 && result.hardest >= result.softest);
+}
+
+void run(Bytes bytes)
+{
+    constexpr std::size_t kMost = 200; // ticks
+    const std::size_t     ticks = bytes.next<std::uint8_t>() % kMost;
+    std::vector<double>   times, places;
+    while (bytes.left() >= 4 * sizeof(double)) {
+        times.push_back(bytes.next<double>());
+        for (int n = 0; n < 3; ++n) places.push_back(bytes.next<double>());
+    }
+    std::vector<double> forces(3 * ticks), proxies(3 * ticks);
+    if (!isDone(
+            palpate_run(theSheet(), times.data(), places.data(), times.size(), ticks, forces.data(), proxies.data())))
+        return;
+    for (std::size_t n = 0; n < ticks; ++n)
+        palp::fuzzExpect(std::hypot(forces[3 * n], forces[3 * n + 1], forces[3 * n + 2]) <= 6.0 + 1e-9);
+    for (const double x : proxies) palp::fuzzExpect(std::isfinite(x));
 }
 
 void solvePlate(Bytes bytes)
@@ -150,6 +314,21 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         break;
     case 'p':
         solvePlate(bytes);
+        break;
+    case 'a':
+        readArrays(bytes);
+        break;
+    case 'f':
+        touchSheet(bytes);
+        break;
+    case 'e':
+        mapEvery(bytes);
+        break;
+    case 'q':
+        perceive(bytes);
+        break;
+    case 'r':
+        run(bytes);
         break;
     default:
         break;

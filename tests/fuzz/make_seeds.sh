@@ -95,6 +95,7 @@ END
 printf '{"cloud": "sample:sheet", "thicknes": 0.004}' >scene/unknown
 printf '{"cloud": "sample:sheet", "thickness": "4 kPa", "poisson": 0.5, "force_law": "paper", "solver": "host"}' >scene/refused
 
+printf '=$PALPATE_THICKNESS=4 mm\n$PALPATE_CLOUD=sample:skin\n$PALPATE_MAX_FORCE=\nwindow=30\nlength_unit=mm\nplace=1,2,3\npreset=paper\n' >scene/stated
 printf 'time,x,y,z\n0,0,0,0.01\n0.1,0,0,0\n1e0,1e-3,0,-2e-3,ignored\n' >hand/csv
 printf '# down and up\n0 0 0 0.01\n0.5; 0; 0; -1e-3\n1\t0\t0\t0.01\n' >hand/mixed
 printf '0 0 0 nan\n0 0 0 1\n-1 0 0 5000\n' >hand/refused
@@ -143,11 +144,19 @@ printf 'depth,force\n0,0\n1e-4,.1\n2e-4,.2\n3e-4,.3\n4e-4,.4\n' >probes/plain
 # Little-endian doubles: x, y, z and a stiffness of three points; four ticks of 0.06 s, and a press of a millimetre.
 mm='\374\251\361\322\115\142\120\077' E='\000\000\000\000\200\117\022\101' tick='\270\036\205\353\121\270\256\077'
 deep='\374\251\361\322\115\142\060\277' n8='\000\000\000\000\000\000\000\000'
-printf "t$n8$n8$n8$E$mm$n8$n8$E$n8$mm$n8$E$mm$mm$n8$E" >capi/points
+mm2='\374\251\361\322\115\142\140\077' places= rows= # 3 x 3 points, 1 mm apart; E in each row
+for x in "$n8" "$mm" "$mm2"; do for y in "$n8" "$mm" "$mm2"; do places="$places$x$y$n8" rows="$rows$x$y$n8$E"; done; done
+printf "t$rows" >capi/points
 printf 'j{"window": "6 mm", "cells": 8, "footprint_radius": "1 mm", "foundation": "1 MPa/m", "edges": "free"}' >capi/scene
 { printf s; for height in "$mm" "$mm" "$n8" "$deep" "$deep"; do printf "$tick$mm$mm$height"; zeros 18; done; } >capi/hand
 { printf 'p\001\002'; printf "$d1$d2$mm$n8"; printf '\000\001\002\003'; printf "$d2$mm$d1$d1$d2$E"; } >capi/plate
 
+# Nine points and a face; then each array: doubles, a uniform stiffness, floats in rows of 14 bytes.
+{ printf 'a\011\000'"$f1"'\001\002'; printf "$places"; printf '\000\047'; zeros 108; printf '\000\000\000\001\002'; } >capi/arrays
+printf "f$d1$mm$mm$n8$n8$n8$d1$n8$n8$n8$n8$n8$n8" >capi/places
+printf "e$mm" >capi/every
+printf "q\007\003$mm$mm$mm$n8$n8$n8$d1$d1$n8$n8" >capi/path
+printf "r\144$n8$mm$mm$mm$tick$mm$mm$n8$d1$mm$mm$deep" >capi/run
 constants='{"format": "palpate falcon calibration 1", "serial": "FZ1", "counts_per_torque": 4321.5, "arm_kg": 0.213,'
 printf '%s "hold_s": 0.02, "date": "2026-11-22"}\000%s "date": "2026-11-22"}' "$constants" "$constants" >calibration/two
 printf 'trial 1\000 \033[2J\t\303\244\302\205\377\340\240\000\000%-300s' long >marker/texts
