@@ -218,6 +218,25 @@ void keepMode(int handle, const std::filesystem::path& older)
     if (::stat(older.c_str(), &found) == 0) static_cast<void>(!::fchmod(handle, found.st_mode & 0777));
 }
 
+/// Refuses what is there and cannot be written, a folder among it.
+/// \param place  where the links in the path lead
+void refuseProtected(const std::filesystem::path& path, const std::filesystem::path& place)
+{
+    std::error_code status;
+    if (std::filesystem::is_directory(place, status)) refuseToWrite(path, "it is a folder; name a file in it");
+    if (std::filesystem::exists(place, status) && ::faccessat(AT_FDCWD, place.c_str(), W_OK, AT_EACCESS) != 0)
+        refuseToWrite(path, reasonOfErrno());
+}
+
+/// Refuses a folder in which no file can be made.
+void refuseClosed(const std::filesystem::path& path, const std::filesystem::path& folder)
+{
+    errno = 0;
+    if (std::error_code status; !std::filesystem::is_directory(folder, status))
+        refuseToWrite(path, std::filesystem::exists(folder, status) ? std::strerror(ENOTDIR) : std::strerror(ENOENT));
+    if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) != 0) refuseToWrite(path, reasonOfErrno());
+}
+
 } // namespace
 
 InputFile::Buffer::Buffer(const std::filesystem::path& path) : path_(path)
@@ -299,12 +318,11 @@ std::string readWhole(const std::filesystem::path& path, std::size_t most, const
 
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write)
 {
-    std::error_code status;
-    if (std::filesystem::is_directory(path, status))
-        throw Error(path.string() + ": cannot be written: it is a folder; name a file in it");
     // A device file or a pipe (/dev/stdout, /dev/null) must not be replaced by a file of the same name.
+    std::error_code status;
     const bool replaceable = !std::filesystem::exists(path, status) || std::filesystem::is_regular_file(path, status);
     const std::filesystem::path place = behindLinks(path);
+    refuseProtected(path, place);
 
     errno = 0;
     std::optional<Draft> draft;
@@ -317,6 +335,23 @@ void writeFileWhole(const std::filesystem::path& path, const std::function<void(
     write(stream);
     if (!stream.flush() || (draft && !draft->name()) || !file.close() || (draft && !draft->replace()))
         refuseToWrite(path, reasonOfErrno());
+}
+
+void expectWritable(const std::filesystem::path& path)
+{
+    const std::filesystem::path place = behindLinks(path);
+    refuseProtected(path, place);
+    std::error_code status;
+    if (!std::filesystem::exists(place, status) || std::filesystem::is_regular_file(place, status))
+        refuseClosed(path, place.has_parent_path() ? place.parent_path() : ".");
+}
+
+void expectWritableFolder(const std::filesystem::path& path)
+{
+    std::filesystem::path place = behindLinks(path.has_filename() ? path : path.parent_path());
+    for (std::error_code status; !std::filesystem::exists(place, status); place = place.parent_path())
+        if (!place.has_parent_path()) return refuseClosed(path, ".");
+    refuseClosed(path, place);
 }
 
 void appendToFile(const std::filesystem::path& path, std::string_view bytes)

@@ -71,11 +71,19 @@ enum class Pipes { read, refused };
 
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
 /// After a failure (an exception in `write`, a full disk) an older file at `path` is as it was and no partly written
-/// file remains. The file keeps the permissions of the older one. A link stays a link, and its file is replaced. A link
+/// file remains. The file keeps the permissions of the older one, which is refused if it is write-protected. A link stays a link, and its file is replaced. A link
 /// that another user, neither root nor the folder's owner, put into a folder where anybody may write, such as /tmp, is
 /// refused wherever it stands in the path, here and by each function below that writes.
 /// \throws Error naming the path and the reason
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
+
+/// Refuses what could not be written, as far as that can be told before: so that nobody works for minutes first.
+/// \throws Error as writeFileWhole() does: a folder of that name, no folder for it, no permission; a stranger's link
+void expectWritable(const std::filesystem::path& path);
+
+/// Does the same for a folder that makeFolder() is to make, or that is there.
+/// \throws Error naming the path and the reason
+void expectWritableFolder(const std::filesystem::path& path);
 
 /// Appends bytes to a file that is there, and waits until the disk has them. After a failure the file has its former
 /// length again, or ends in a part of the bytes where the system refuses that, too.

@@ -69,6 +69,15 @@ double radiusAbout(const SoftObject& object, std::uint32_t point)
     return std::max({kSpacings * object.spacing(), kShare * diagonal, std::min(quiet, kMost * diagonal)});
 }
 
+/// Returns a curvature, and none where noise alone may have made it [1/m].
+double sureCurvature(double curvature, const SoftObject& object, std::uint32_t point)
+{
+    constexpr double     kSure  = 3; // standard errors [1]
+    const SurfaceSurvey& survey = object.survey();
+    const double error = fitError(survey.noise(point), survey.spacing(point), radiusAbout(object, point));
+    return std::abs(curvature) > kSure * error ? curvature : 0;
+}
+
 /// Returns how a shell bends at places spread evenly over the object, where its points determine it; a plate does not.
 std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& settings)
 {
@@ -88,7 +97,8 @@ std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& setting
                                            radiusAbout(object, point));
             if (!fit) continue;
             const auto [most, least] = principalOf(*fit);
-            found[k]                 = Bend{point, most, least, area};
+            found[k] =
+                Bend{point, sureCurvature(most, object, point), sureCurvature(least, object, point), area};
         }
     });
     std::vector<Bend> bends;

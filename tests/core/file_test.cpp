@@ -372,6 +372,46 @@ TEST_F(Files, AsManyLinksAreFollowedAsTheSystemFollows)
     EXPECT_TRUE(holds(refusal, {"too many links"})) << refusal;
 }
 
+TEST_F(Files, WhatCannotBeWrittenIsRefusedBeforeTheWork)
+{
+    makeFolder(folder_ / "b");
+    std::ofstream(folder_ / "file") << "old";
+    for (const auto& [path, why] : {std::pair("none/a", "none/a: cannot be written: No such file"),
+                                    std::pair("file/a", "file/a: cannot be written: Not a directory"),
+                                    std::pair("b", "b: cannot be written: it is a folder")}) {
+        const std::string refusal = refusalOf([&] { expectWritable(folder_ / path); });
+        EXPECT_TRUE(holds(refusal, {why})) << path << ": " << refusal;
+        EXPECT_EQ(refusalOf([&] { writeFileWhole(folder_ / path, writeNew); }), refusal);
+    }
+    const std::string refusal = refusalOf([&] { expectWritableFolder(folder_ / "file" / "b" / "c"); });
+    EXPECT_TRUE(holds(refusal, {"file/b/c: cannot be written: Not a directory"})) << refusal;
+    for (const char* const path : {"a", "file"}) EXPECT_EQ(refusalOf([&] { expectWritable(folder_ / path); }), "");
+    for (const char* const path : {"b", "b/", "c/d/e"})
+        EXPECT_EQ(refusalOf([&] { expectWritableFolder(folder_ / path); }), "");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a") || std::filesystem::exists(folder_ / "c"));
+}
+
+TEST_F(Files, WhatIsProtectedStaysAsItIs)
+{
+    constexpr uid_t kStranger = 65534;
+    makeFolder(folder_ / "closed");
+    std::ofstream(folder_ / "file") << "old";
+    std::filesystem::permissions(folder_, std::filesystem::perms(0777));
+    std::filesystem::permissions(folder_ / "file", std::filesystem::perms(0444));
+    std::filesystem::permissions(folder_ / "closed", std::filesystem::perms(0555));
+    const uid_t own = ::geteuid();
+    if (own == 0) ASSERT_EQ(::seteuid(kStranger), 0); // root may write everything
+    for (const char* const path : {"file", "closed/a"}) {
+        const std::string refusal = refusalOf([&] { expectWritable(folder_ / path); });
+        EXPECT_TRUE(holds(refusal, {path, "cannot be written: Permission denied"})) << refusal;
+        EXPECT_EQ(refusalOf([&] { writeFileWhole(folder_ / path, writeNew); }), refusal);
+    }
+    const std::string refusal = refusalOf([&] { expectWritableFolder(folder_ / "closed" / "a" / "b"); });
+    EXPECT_TRUE(holds(refusal, {"cannot be written: Permission denied"})) << refusal;
+    ASSERT_EQ(::seteuid(own), 0);
+    EXPECT_EQ(contentsOf(folder_ / "file"), "old");
+}
+
 TEST_F(Files, WhatIsAppendedStandsAtTheEndOfAFileThatIsThere)
 {
     std::ofstream(folder_ / "a") << "old";

@@ -136,6 +136,11 @@ std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm:
     }
 }
 
+double fitError(double noise, double spacing, double radius) noexcept
+{
+    return kFitNoiseError * noise * spacing / (radius * radius * radius);
+}
+
 double quietFitRadius(double noise, double spacing) noexcept
 {
     constexpr double kMost = 0.5; // [1/m]

@@ -29,8 +29,11 @@ struct LaidPoints {
 [[nodiscard]] std::optional<LocalCurvature> faceCurvature(const SoftObject& object, const glm::dvec3& place,
                                                           const glm::dvec3& outward, double radius);
 
-/// Returns the radius from which on noise changes a fit by 0.5 1/m or less [m]: its error is kFitNoiseError noise
-/// spacing / radius^3.
+/// Returns the error that noise leaves in a curvature [1/m]: kFitNoiseError noise spacing / radius^3.
+/// \param noise, spacing, radius  of the points and of the fit [m]
+[[nodiscard]] double fitError(double noise, double spacing, double radius) noexcept;
+
+/// Returns the radius from which on that is 0.5 1/m or less [m].
 /// \param noise, spacing  of the points [m]
 [[nodiscard]] double quietFitRadius(double noise, double spacing) noexcept;
 

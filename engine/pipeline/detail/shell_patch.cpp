@@ -229,7 +229,6 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
     patch.principal   = principalOf(x, z, xz);
     patch.shellLength = lengthOf(patch, material, settings.foundation);
     patch.sag         = sagOf(patch, object, points);
-    cutOutCurvature(patch);
     if (const auto why = whyUnsolvable(shellOf(patch))) {
         patch.flatBecause = *why;
         patch.curvature.reset();

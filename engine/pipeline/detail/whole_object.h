@@ -19,10 +19,6 @@ void cutOut(Patch& patch, double spacing, Theory theory);
 /// \pre its compliance is that of the sheet, also beyond its border
 void cutOutMembrane(Patch& patch);
 
-/// Takes away the curvature beyond the border.
-/// \pre the patch has one
-void cutOutCurvature(Patch& patch);
-
 /// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are: with
 /// 1000 D / cell^4 a dent dies away within a fifth of a cell. Fills in patch.held and patch.heldNodes.
 /// \param held        share of each node that is held [1], see SoftObject::withHeld

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/file.h"
 #include "engine/core/quantity.h"
 
 namespace palp {
@@ -35,14 +36,17 @@ nlohmann::ordered_json orNull(const std::string& text)
 
 void demandSvg(const std::string& option, const std::string& file)
 {
-    if (!file.empty() && std::filesystem::path(file).extension() != ".svg")
+    if (file.empty()) return;
+    if (std::filesystem::path(file).extension() != ".svg")
         throw Error(option + ": expected a file that ends in .svg, found \"" + file + "\"");
+    expectWritable(file);
 }
 
 void demandFolder(const std::string& option, const std::string& folder)
 {
     if (folder == "-")
         throw Error(option + ": expected a folder, found \"-\", which stands for standard output; name a folder");
+    if (!folder.empty()) expectWritableFolder(folder);
 }
 
 void demandOwner(const CLI::App& command, const std::string& owner, std::initializer_list<const char*> options)

@@ -52,10 +52,11 @@ void say(const std::vector<std::string>& sentences);
 
 /// Refuses other files, so that no slip writes a picture over a scene, a hand or a table.
 /// \param option  opens the complaint
-/// \throws Error unless the file's name ends in .svg, or is empty: no picture
+/// \throws Error unless the file's name ends in .svg and it can be written, or is empty: no picture
 void demandSvg(const std::string& option, const std::string& file);
 
-/// Refuses the name that stands for standard output, where a folder would be made of that name.
+/// Refuses the name that stands for standard output, where a folder would be made of that name, and a folder in which
+/// nothing can be written.
 /// \param option  opens the complaint
 void demandFolder(const std::string& option, const std::string& folder);
 

@@ -317,6 +317,8 @@ void addFitCommand(CLI::App& app)
         if (!o->out.empty()) static_cast<void>(formatToWrite(o->out)); // first, refuses a name of no known format
         if (!o->page.empty() && std::filesystem::path(o->page).extension() != ".html")
             throw Error("--page: expected a file that ends in .html, found \"" + o->page + "\"");
+        for (const std::string& file : {o->out, o->page})
+            if (!file.empty()) expectWritable(file);
         const bool isScene = o->source.name.ends_with(".json") || o->source.name.starts_with(kSamplePrefix);
         if (!isScene && fit::holdsProbes(o->source.name)) {
             if (command->get_option("--places")->count() > 0)

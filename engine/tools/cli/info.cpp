@@ -178,7 +178,7 @@ void addInfoCommand(CLI::App& app)
     command->add_flag("--keys", *keys, "lists the keys of scenes, as a table in Markdown");
     command->add_flag("--schema", *schema, "prints the JSON Schema of scene files");
     command->add_option("--picture", options->picture,
-                        "a new .png or .svg file: the object in the colours of spacing and of noise");
+                        "a .png or .svg file: the object in the colours of spacing and of noise");
     command->add_flag("--json", options->json, "machine-readable");
     command->footer("Examples:\n"
                     "  palpate info scan.ply --picture quality.png\n"

@@ -293,6 +293,7 @@ void demandPictureName(const std::string& option, const std::string& file)
     const auto ending = std::filesystem::path(file).extension();
     if (ending != ".png" && ending != ".svg")
         throw Error(option + ": expected a file that ends in .png or .svg, found \"" + file + "\"");
+    expectWritable(file);
 }
 
 /// Returns what colours span [m]: what 90 % of the area have, and 90 % of the points, as a dense part may be small and

@@ -263,6 +263,7 @@ void render(const RenderOptions& o)
 {
     if (std::filesystem::path(o.out).extension() != ".png")
         throw Error("--out: expected a file that ends in .png, found \"" + o.out + "\"");
+    expectWritable(o.out);
     constexpr int kMostFrames = 9999;
     if (o.frames && (*o.frames < 1 || *o.frames > kMostFrames))
         throw Error("--frames: expected 1 to 9999, found " + std::to_string(*o.frames));

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/contract.h"
+#include "engine/core/file.h"
 #include "engine/core/npy.h"
 #include "engine/core/progress.h"
 #include "engine/core/quantity.h"
@@ -191,6 +192,7 @@ void solveAndPrint(const SolveOptions& options)
 {
     if (!options.out.empty() && std::filesystem::path(options.out).extension() != ".npy")
         throw Error("--out: expected a name that ends with .npy, found \"" + options.out + "\"");
+    if (!options.out.empty()) expectWritable(options.out);
     const Solved s = solved(options);
     if (!options.out.empty()) writeNpy(options.out, s.solution.deflection);
     if (options.json)
