@@ -396,7 +396,7 @@ TEST_F(Files, WhatIsProtectedStaysAsItIs)
     constexpr uid_t kStranger = 65534;
     makeFolder(folder_ / "closed");
     std::ofstream(folder_ / "file") << "old";
-    std::filesystem::permissions(folder_, std::filesystem::perms(0777));
+    std::filesystem::permissions(folder_ / ".", std::filesystem::perms(0777));
     std::filesystem::permissions(folder_ / "file", std::filesystem::perms(0444));
     std::filesystem::permissions(folder_ / "closed", std::filesystem::perms(0555));
     const uid_t own = ::geteuid();
