@@ -31,9 +31,8 @@ namespace palp {
 ///
 /// The boxes are primitives of one user geometry, because point queries never visit Embree's own point primitives.
 /// Embree orders its leaves by primitive number, so the tree, and with it the order of the visits, does not depend
-/// on the number of threads that built it. Nor does it on the processor, as Embree is held to the instructions that all
-/// of them have: its trees are as wide as its registers, and sums over points in another order round otherwise. That
-/// costs nothing measurable in a search and some 4 % of loading a million points.
+/// on the number of threads that built it. Nor does it on the processor, of those with AVX2: Embree's trees are as wide
+/// as the registers that it uses, and sums over points in another order round otherwise. AVX-512 would gain nothing.
 /// \thread const calls from any number of threads at once
 class BoxTree {
 public:
@@ -84,9 +83,9 @@ private:
     // ThreadSanitizer does not see how Embree's builders hand over to TBB's workers, and reports false races. The
     // setting is for it only: TBB's threads in the whole process are limited for as long as Embree's own device lives.
 #if defined(PALP_THREAD_SANITIZER)
-    static constexpr const char* kConfiguration = "isa=sse2,threads=1";
+    static constexpr const char* kConfiguration = "max_isa=avx2,threads=1";
 #else
-    static constexpr const char* kConfiguration = "isa=sse2";
+    static constexpr const char* kConfiguration = "max_isa=avx2";
 #endif
 
     /// Calls `visit`. An exception may not pass through Embree, which would swallow it: it waits for the query to end.
