@@ -71,9 +71,10 @@ enum class Pipes { read, refused };
 
 /// Writes a file whole or not at all: `write` fills a temporary file beside `path`, which is then renamed over it.
 /// After a failure (an exception in `write`, a full disk) an older file at `path` is as it was and no partly written
-/// file remains. The file keeps the permissions of the older one, which is refused if it is write-protected. A link stays a link, and its file is replaced. A link
-/// that another user, neither root nor the folder's owner, put into a folder where anybody may write, such as /tmp, is
-/// refused wherever it stands in the path, here and by each function below that writes.
+/// file remains. The file keeps the permissions of the older one, which is refused if it is write-protected. A link
+/// stays a link, and its file is replaced. A link that another user, neither root nor the folder's owner, put into a
+/// folder where anybody may write, such as /tmp, is refused wherever it stands in the path, here and by each function
+/// below that writes.
 /// \throws Error naming the path and the reason
 void writeFileWhole(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 

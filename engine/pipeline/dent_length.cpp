@@ -69,20 +69,12 @@ double radiusAbout(const SoftObject& object, std::uint32_t point)
     return std::max({kSpacings * object.spacing(), kShare * diagonal, std::min(quiet, kMost * diagonal)});
 }
 
-/// Returns a curvature, and none where noise alone may have made it [1/m].
-double sureCurvature(double curvature, const SoftObject& object, std::uint32_t point)
-{
-    constexpr double     kSure  = 3; // standard errors [1]
-    const SurfaceSurvey& survey = object.survey();
-    const double error = fitError(survey.noise(point), survey.spacing(point), radiusAbout(object, point));
-    return std::abs(curvature) > kSure * error ? curvature : 0;
-}
-
 /// Returns how a shell bends at places spread evenly over the object, where its points determine it; a plate does not.
 std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& settings)
 {
     if (object.survey().spacings().empty()) return {}; // too few points for a surface
     constexpr std::size_t            kPlaces = 192;
+    constexpr double                 kSure   = 3; // standard errors [1]
     const std::size_t                places  = std::min(kPlaces, object.size());
     std::vector<std::optional<Bend>> found(places);
     inParallel(places, 8, [&](std::size_t begin, std::size_t end) {
@@ -93,12 +85,15 @@ std::vector<Bend> bendsOf(const SoftObject& object, const PatchSettings& setting
                 found[k] = Bend{point, 0, 0, area};
                 continue;
             }
-            const auto fit = faceCurvature(object, object.positions()[point], object.survey().normal(point),
-                                           radiusAbout(object, point));
+            const SurfaceSurvey& survey = object.survey();
+            const double         radius = radiusAbout(object, point);
+            const auto           fit = faceCurvature(object, object.positions()[point], survey.normal(point), radius);
             if (!fit) continue;
+            // What noise alone may have made is no curvature.
+            const double error = fitError(survey.noise(point), survey.spacing(point), radius);
+            const auto   sure  = [&](double curvature) { return std::abs(curvature) > kSure * error ? curvature : 0; };
             const auto [most, least] = principalOf(*fit);
-            found[k] =
-                Bend{point, sureCurvature(most, object, point), sureCurvature(least, object, point), area};
+            found[k]                 = Bend{point, sure(most), sure(least), area};
         }
     });
     std::vector<Bend> bends;

@@ -13,10 +13,10 @@ namespace {
 /// Rigidity beyond the border over that of the sheet [1]. With a plate's a cantilever of 60 mm is softer than one with
 /// a free edge by less than the grid's own error (0.02 % with 1e-5 in its place), and solvers take a step or two more.
 /// The solver of shells converges up to such contrasts alone: dishes and lobes are 2 % too stiff by them, nearly all of
-/// it by the membrane's, and a long gutter that is held at one end by a half, because what lies beyond its border goes on
-/// curving, and resists at a long lever. The curvature itself is not cut out: one that ends at a border along which it
-/// changes belongs to no surface, and such a sheet carries loads by stresses of its own (a gutter of 100 mm was felt five
-/// times too stiff, whatever the void).
+/// it by the membrane's, and a long gutter that is held at one end by a half, because what lies beyond its border goes
+/// on curving, and resists at a long lever. The curvature itself is not cut out: one that ends at a border along which
+/// it changes belongs to no surface, and such a sheet carries loads by stresses of its own (a gutter of 100 mm was felt
+/// five times too stiff, whatever the void).
 constexpr double kVoidOfPlates = 1e-4, kVoidOfShells = 3e-3, kVoidOfMembranes = 1e-3;
 
 double shareOf(double covered, double beyond)
