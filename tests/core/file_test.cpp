@@ -400,7 +400,9 @@ TEST_F(Files, WhatIsProtectedStaysAsItIs)
     std::filesystem::permissions(folder_ / "file", std::filesystem::perms(0444));
     std::filesystem::permissions(folder_ / "closed", std::filesystem::perms(0555));
     const uid_t own = ::geteuid();
-    if (own == 0) ASSERT_EQ(::seteuid(kStranger), 0); // root may write everything
+    if (own == 0) { // root may write everything
+        ASSERT_EQ(::seteuid(kStranger), 0);
+    }
     for (const char* const path : {"file", "closed/a"}) {
         const std::string refusal = refusalOf([&] { expectWritable(folder_ / path); });
         EXPECT_TRUE(holds(refusal, {path, "cannot be written: Permission denied"})) << refusal;
