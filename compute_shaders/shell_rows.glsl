@@ -59,7 +59,7 @@ ShellRow shellRow(ShellLayout l, int i, int j)
     row.f += entryAt(l, kCoupleNorthWest, i + 1, j - 1) * c.southEast + entryAt(l, kCoupleNorthEast, i - 1, j - 1) * c.southWest;
     row.f += entryAt(l, kColumnSum, i, j) * w;
     c = changesOf(l, 1, i, j, f);
-    row.f -= ownRow(l, kStressEast, 1, i, j, f, c);
+    row.f -= ownRow(l, kStressEast, 1, i, j, f, c) + entryAt(l, kStressBed, i, j) * f;
     row.w += entryAt(l, kCoupleEast, i, j) * c.east + entryAt(l, kCoupleWest, i, j) * c.west;
     row.w += entryAt(l, kCoupleNorth, i, j) * c.north + entryAt(l, kCoupleSouth, i, j) * c.south;
     row.w += entryAt(l, kCoupleNorthEast, i, j) * c.northEast + entryAt(l, kCoupleNorthWest, i, j) * c.northWest;

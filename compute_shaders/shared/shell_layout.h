@@ -47,11 +47,12 @@ PALPATE_PLANE(kCoupleNorthWest, 17)
 PALPATE_PLANE(kCoupleSouthEast, 18)
 PALPATE_PLANE(kCoupleSouthWest, 19)
 PALPATE_PLANE(kBed, 20)       // what the foundation adds to the row of w
-PALPATE_PLANE(kColumnSum, 21) // of B: what a deflection of 1 everywhere does to the row of phi
-PALPATE_PLANE(kInverseW, 22)  // what relaxation multiplies the residuals of the node with: see shell_relax.h
-PALPATE_PLANE(kInverseWF, 23)
-PALPATE_PLANE(kInverseF, 24)
-PALPATE_PLANE(kShellPlanes, 25)
+PALPATE_PLANE(kStressBed, 21) // what phi's bed adds to the row of C
+PALPATE_PLANE(kColumnSum, 22) // of B: what a deflection of 1 everywhere does to the row of phi
+PALPATE_PLANE(kInverseW, 23)  // what relaxation multiplies the residuals of the node with: see shell_relax.h
+PALPATE_PLANE(kInverseWF, 24)
+PALPATE_PLANE(kInverseF, 25)
+PALPATE_PLANE(kShellPlanes, 26)
 #ifdef __cplusplus
 };
 #endif

@@ -118,7 +118,8 @@ struct Patch {
     PatchWindow window;
     Plate       plate; ///< rigidity at the nodes, edges, foundation
     NodeField
-        membraneCompliance{}; ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell or large deflections
+        membraneCompliance{}, ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell or large deflections
+        stressBed{};          ///< see Shell::stressBed; empty: the object does not end in the window
     /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
     std::optional<CurvatureField> curvature;
     std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not

@@ -98,7 +98,7 @@ public:
         // second derivatives by 1e-5 at most, because its slowest wave resists by 182 C / a^4.
         constexpr double kGround = 1e-5 * 182;
         const double     a       = std::max(shell.bending.grid.sizeX(), shell.bending.grid.sizeZ());
-        if (isStressFree(shell))
+        if (isStressFree(shell) && membrane_.foundation == 0)
             anchored_.foundation = kGround * geometricMean(shell.membraneCompliance.values()) / std::pow(a, 4);
     }
 

@@ -95,7 +95,7 @@ bool areAlike(const Shell& a, const Shell& b)
     return sameButRigidity(a.bending, b.bending) && areAlike(a.bending.rigidity, b.bending.rigidity) &&
            areAlike(a.bending.foundationShape, b.bending.foundationShape) && a.stressEdges == b.stressEdges &&
            alike(&Shell::membraneCompliance) && alike(&Shell::curvatureX) && alike(&Shell::curvatureZ) &&
-           alike(&Shell::curvatureXZ) && alike(&Shell::sheared);
+           alike(&Shell::curvatureXZ) && alike(&Shell::stressBed) && alike(&Shell::sheared);
 }
 
 /// Returns the report of all loads, or one of a load that did not converge.

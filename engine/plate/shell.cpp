@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "engine/core/extremes.h"
+
 namespace palp {
 namespace {
 
@@ -144,6 +146,11 @@ Plate membraneOf(const Shell& shell)
     membrane.edges        = shell.stressEdges;
     membrane.poissonRatio = -shell.bending.poissonRatio;
     membrane.rigidity     = shell.membraneCompliance;
+    if (shell.stressBed.values().empty()) return membrane;
+    membrane.foundation      = extremesOf(shell.stressBed.values()).most;
+    membrane.foundationShape = shell.stressBed;
+    if (membrane.foundation > 0)
+        for (double& share : membrane.foundationShape.values()) share /= membrane.foundation;
     return membrane;
 }
 
@@ -163,6 +170,10 @@ std::optional<std::string> whyUnsolvable(const Shell& shell)
         if (!curvature->on(grid)) return "a curvature is on another grid than the rigidity";
         if (!isFinite(*curvature)) return "a curvature is not finite";
     }
+    if (!shell.stressBed.values().empty() && !shell.stressBed.on(grid))
+        return "the bed of the stresses is on another grid than the rigidity";
+    if (!std::ranges::all_of(shell.stressBed.values(), [](double k) { return k >= 0 && std::isfinite(k); }))
+        return "the bed of the stresses has to be finite and at least 0 everywhere";
     if (shell.bending.poissonRatio < 0) return "a shell's Poisson's ratio has to be at least 0";
     if (isStressFree(shell)) return std::nullopt;
     if (whyUnsolvable(membraneOf(shell))) // only its edges are left as a reason

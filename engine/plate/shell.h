@@ -24,6 +24,8 @@ struct Shell {
     NodeField  membraneCompliance; ///< C [m/N], > 0
     PlateEdges stressEdges{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
     NodeField  curvatureX, curvatureZ, curvatureXZ; ///< kx, kz, kxz [1/m], > 0 where the surface bulges to the finger
+    NodeField  stressBed{}; ///< that holds phi at 0 where there is no sheet to carry a force [1/(N m^3)]: adds
+                            ///< -1/2 int bed phi^2; empty: none
     NodeField sheared{}; ///< share of shearWork() that counts at the nodes [1]: none where they stand for no free sheet
                          ///< or its sides; empty: all
 };

@@ -335,8 +335,8 @@ SoftObject gutterOf(double radius, unsigned seed)
         shares.push_back(x < -40e-3);
     };
     for (int n = 0; seed != 0 && n < 4000; ++n) add(along(bits), across(bits));
-    for (int i = 0; seed == 0 && i <= 125; ++i)
-        for (int j = 0; j <= 50; ++j) add(-50e-3 + 0.8e-3 * i, -20e-3 + 0.8e-3 * j);
+    for (int i = 0; seed == 0 && i < 125; ++i) // each in the middle of its share
+        for (int j = 0; j < 50; ++j) add(-49.6e-3 + 0.8e-3 * i, -19.6e-3 + 0.8e-3 * j);
     std::vector<double> moduli(points.size(), 1e6);
     return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
                       {.thickness = 1e-3, .poissonRatio = 0.3})
@@ -344,7 +344,8 @@ SoftObject gutterOf(double radius, unsigned seed)
 }
 
 /// Truth: CalculiX, shells S8R of 2 mm, all of the held end fixed; beams of the same sections are 3 % stiffer. A
-/// curvature that ended at the border made these gutters 2.7 times too stiff, and those of a raster 5.5 times.
+/// curvature that ended at the border made these gutters 2.7 times too stiff, and those of a raster 5.5 times; a
+/// membrane beyond it that gave way a thousand times as much, 1.24 and 1.46 times.
 TEST(WholeObject, AGutterHeldAtOneEndBendsAsABeam)
 {
     PatchSettings settings   = kWhole;
@@ -356,8 +357,8 @@ TEST(WholeObject, AGutterHeldAtOneEndBendsAsABeam)
             felt.push_back(touched(gutterOf(radius, seed), 30e-3, 0, settings).feltStiffness);
         const auto [least, most] = std::ranges::minmax(felt);
         EXPECT_GT(least, 0.97 * truth) << radius;
-        EXPECT_LT(most, 1.6 * truth) << radius << " m: what lies beyond the border is next to nothing at a long lever";
-        EXPECT_LT(most / least, 1.12) << radius << " m: it goes with the width to the fourth power, 0.4 mm are 4 %";
+        EXPECT_LT(most, 1.16 * truth) << radius << " m: what lies beyond the border is next to nothing at a long lever";
+        EXPECT_LT(most / least, 1.1) << radius << " m: it goes with the width to the fifth power, 0.6 mm are 8 %";
     }
 }
 

@@ -63,6 +63,19 @@ TEST(MultigridShellSolver, IsTheReferenceAtAFreeBorderOfTheObject)
     EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6);
 }
 
+TEST(MultigridShellSolver, IsTheReferenceWhereTheShellEndsWithinTheWindow)
+{
+    for (const int cells : {32, 64}) {
+        const Shell         shell = cutAslant(shellOf(square(cells), wart(10), constant(1, 0.5, 0.3), 8));
+        const NodeField     load  = fingertip(square(cells), 3e-3, -2e-3);
+        const ShellSolution exact = ReferenceShellSolver(shell).solve(load);
+        const ShellAnswer   found = solved(shell, load);
+        EXPECT_TRUE(found.report.converged) << cells << " cells";
+        EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6);
+        EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6);
+    }
+}
+
 TEST(MultigridShellSolver, StandsOnAFoundationThatVaries)
 {
     Shell shell                   = shellOf(square(32), wart(10), constant(1, 0.5, 0.1), 8);

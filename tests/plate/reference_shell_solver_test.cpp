@@ -53,6 +53,28 @@ PlateEdges allSides(Edge edge)
     return {edge, edge, edge, edge};
 }
 
+/// The same shell of a window that reaches beyond the border by a half: bare there, with a void and its stresses held.
+Shell withVoidBeyond(const Shell& shell)
+{
+    const PlateGrid& own  = shell.bending.grid;
+    Shell            wide = homogeneous(own.cellsX, own.sizeX(), {shell.curvatureX(0, 0), shell.curvatureZ(0, 0), 0});
+    PlateGrid&       grid = wide.bending.grid;
+    grid.cellsX += own.cellsX / 2;
+    wide.bending.edges = shell.bending.edges;
+    wide.stressEdges   = shell.stressEdges;
+    const double area  = grid.spacingX * grid.spacingZ;
+    for (NodeField* field :
+         {&wide.bending.rigidity, &wide.membraneCompliance, &wide.curvatureX, &wide.curvatureZ, &wide.curvatureXZ})
+        *field = NodeField(grid, field->values().front());
+    wide.stressBed = NodeField(grid);
+    for (int i = own.cellsX + 1; i <= grid.cellsX; ++i)
+        for (int j = 0; j <= grid.cellsZ; ++j) {
+            wide.bending.rigidity(i, j) *= 1e-6;
+            wide.stressBed(i, j) = 270 * kCompliance / (area * area);
+        }
+    return wide;
+}
+
 double compliance(const Shell& shell, const NodeField& load)
 {
     return dot(load, ReferenceShellSolver(shell).solve(load).deflection);
@@ -166,6 +188,26 @@ TEST(ReferenceShellSolver, AGuidedSideIsTheMiddleOfASymmetricShell)
     force(16, 14) = 1;
     share(16, 14) = 0.5; // the other half carries as much
     EXPECT_NEAR(2 * compliance(half, share) / compliance(whole, force), 1, 1e-9) << "up to rounding";
+}
+
+TEST(ReferenceShellSolver, WhereItsStressesAreHeldItEndsAsAtItsOwnBorder)
+{
+    std::vector<double> errors;
+    for (const int cells : {16, 32, 64}) {
+        Shell own         = homogeneous(cells, kSize, {1 / kRadius, 0, 0});
+        own.bending.edges = {Edge::free, Edge::free, Edge::clamped, Edge::free};
+        own.stressEdges   = {Edge::clamped, Edge::clamped, Edge::free, Edge::clamped};
+        const Shell wide  = withVoidBeyond(own);
+        const auto  felt  = [&](const Shell& shell) {
+            return compliance(shell, footprintLoad(shell.bending.grid, 1, kSize / 2, 0.8 * kSize, 6e-3));
+        };
+        errors.push_back(felt(wide) / felt(own) - 1);
+    }
+    // The first bare node is held, so that the gutter is a cell wider, whose second moment goes with its width to the
+    // fifth power: of the first order.
+    EXPECT_LT(std::abs(errors[1]), 0.7 * std::abs(errors[0])) << errors[0] << " " << errors[1];
+    EXPECT_LT(std::abs(errors[2]), 0.7 * std::abs(errors[1])) << errors[1] << " " << errors[2];
+    EXPECT_NEAR(errors[2], std::pow(64.0 / 65, 5) - 1, 0.01);
 }
 
 TEST(ReferenceShellSolver, IsThePlateWithoutCurvature)

@@ -90,6 +90,22 @@ inline Bend ridges()
             [=](double x, double z) { return 0.3 * wave(x, z); }};
 }
 
+/// Returns the shell as one that ends within the window, aslant: beyond its border the rigidity is 3e-3 and a bed holds
+/// the stresses, as of objects that end.
+inline Shell cutAslant(Shell shell)
+{
+    const PlateGrid& grid = shell.bending.grid;
+    const double     area = grid.spacingX * grid.spacingZ;
+    shell.stressBed       = NodeField(grid);
+    for (int i = 0; i <= grid.cellsX; ++i)
+        for (int j = 0; j <= grid.cellsZ; ++j)
+            if (3 * i + j > 2.7 * grid.cellsX) {
+                shell.bending.rigidity(i, j) *= 3e-3;
+                shell.stressBed(i, j) = 270 * shell.membraneCompliance(i, j) / (area * area);
+            }
+    return shell;
+}
+
 inline NodeField fingertip(const PlateGrid& grid, double x = 0, double z = 0)
 {
     return footprintLoad(grid, 1, kSize / 2 + x, kSize / 2 + z, 4e-3);

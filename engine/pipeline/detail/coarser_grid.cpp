@@ -46,8 +46,9 @@ Shell everySecondOf(const Shell& fine)
     const PlateGrid& grid   = fine.bending.grid;
     const PlateGrid  coarse = {grid.cellsX / 2, grid.cellsZ / 2, 2 * grid.spacingX, 2 * grid.spacingZ};
     shell.bending.grid      = coarse;
-    for (NodeField* field : {&shell.bending.rigidity, &shell.bending.foundationShape, &shell.membraneCompliance,
-                             &shell.curvatureX, &shell.curvatureZ, &shell.curvatureXZ, &shell.sheared})
+    for (NodeField* field :
+         {&shell.bending.rigidity, &shell.bending.foundationShape, &shell.membraneCompliance, &shell.curvatureX,
+          &shell.curvatureZ, &shell.curvatureXZ, &shell.stressBed, &shell.sheared})
         *field = everySecondOf(*field, coarse);
     return shell;
 }

@@ -197,6 +197,7 @@ Shell shellOf(const Patch& patch)
             curvature(&CurvatureField::x),
             curvature(&CurvatureField::z),
             curvature(&CurvatureField::xz),
+            patch.stressBed,
             patch.sheared};
 }
 

@@ -14,8 +14,8 @@ namespace palp {
 /// \pre the plate's rigidity is that of the sheet, also beyond its border
 void cutOut(Patch& patch, double spacing, Theory theory);
 
-/// Does the same with the membrane, which gives way beyond the border, and where nodes are held hardly stretches: what
-/// surrounds a shell then stays where it is in its plane.
+/// Does the same with the membrane, which carries no force beyond the border (patch.stressBed), and where nodes are held
+/// hardly stretches: what surrounds a shell then stays where it is in its plane.
 /// \pre its compliance is that of the sheet, also beyond its border
 void cutOutMembrane(Patch& patch);
 

@@ -67,7 +67,8 @@ public:
             entries(bend_, kBendEast, i);
             entries(stress_, kStressEast, i);
             coupling(i + 1);
-            bed(i);
+            bed(maps_.bending, maps_.shape, wMoves_, kept(kBed, i), i);
+            bed(maps_.stress, maps_.stressShape, fMoves_, kept(kStressBed, i), i);
             columnSum(i);
             inverses(i);
             for (int plane = 0; plane < kShellPlanes; ++plane) write(plane, i);
@@ -212,13 +213,11 @@ private:
         return sum;
     }
 
-    void bed(int i)
+    void bed(const PlateLevel& g, const float* shape, const Map& moves, double* to, int i) const
     {
-        const PlateLevel& g  = maps_.bending;
-        double*           to = kept(kBed, i);
         for (int j = 0; j <= cellsZ_; ++j) {
-            const double all = double(g.bed) * rules.nodeShare(g, i, j) * wMoves_.row(i)[j];
-            to[j]            = maps_.shape ? all * at(maps_.shape, i)[j] : all;
+            const double all = double(g.bed) * rules.nodeShare(g, i, j) * moves.row(i)[j];
+            to[j]            = shape ? all * at(shape, i)[j] : all;
         }
     }
 
@@ -244,14 +243,14 @@ private:
                      *sw   = from(kBendNorthEast, -1);
         const double *here = moves.row(i), *mE = moves.row(i + 1), *mW = moves.row(i - 1), *mE2 = moves.row(i + 2),
                      *mW2 = moves.row(i - 2);
-        const double* bed = plane == kBendEast ? kept(kBed, i) : nullptr;
+        const double* bed = kept(plane == kBendEast ? kBed : kStressBed, i);
         for (int j = 0; j <= cellsZ_; ++j) {
             const double all = ((e[j] + w[j]) + (n[j] + n[j - 1])) + ((e2[j] + w2[j]) + (n2[j] + n2[j - 2])) +
                                ((ne[j] + sw[j - 1]) + (se[j] + nw[j + 1]));
             const double same = abs(e2[j]) * mE2[j] + abs(w2[j]) * mW2[j] + abs(n2[j]) * here[j + 2] +
                                 abs(n2[j - 2]) * here[j - 2] + abs(ne[j]) * mE[j + 1] + abs(sw[j - 1]) * mW[j - 1] +
                                 abs(se[j]) * mE[j - 1] + abs(nw[j + 1]) * mW[j + 1];
-            to[j] = rules.relaxationDivisor((bed ? bed[j] : 0) - all, same);
+            to[j] = rules.relaxationDivisor(bed[j] - all, same);
         }
     }
 

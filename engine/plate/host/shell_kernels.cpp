@@ -148,7 +148,7 @@ struct RowOfShell {
         ofF += entry(kCoupleNorthWest, 1, -1, m) * near[6] + entry(kCoupleNorthEast, -1, -1, m) * near[7];
         ofF += entry(kColumnSum, 0, 0, m) * w;
         changes(1, f, m, near, far);
-        ofF -= own(kStressEast, near, far, m);
+        ofF -= own(kStressEast, near, far, m) + entry(kStressBed, 0, 0, m) * f;
         ofW += entry(kCoupleEast, 0, 0, m) * near[0] + entry(kCoupleWest, 0, 0, m) * near[1];
         ofW += entry(kCoupleNorth, 0, 0, m) * near[2] + entry(kCoupleSouth, 0, 0, m) * near[3];
         ofW += entry(kCoupleNorthEast, 0, 0, m) * near[4] + entry(kCoupleNorthWest, 0, 0, m) * near[5];

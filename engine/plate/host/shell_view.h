@@ -15,6 +15,7 @@ struct ShellMaps {
     shared::PlateLevel bending, stress;
     const float *      rigidity, *compliance;                 ///< over their means [1]
     const float*       shape;                                 ///< of the foundation; null: 1
+    const float*       stressShape;                           ///< of phi's bed; null: there is none
     const float *      curvatureX, *curvatureZ, *curvatureXZ; ///< times what makes them entries [1]
 };
 

@@ -24,7 +24,7 @@ protected:
         if (!ShellKernels::suit(context())) GTEST_SKIP() << context().processor().name << " has no doubles";
         using enum Edge;
         const PlateGrid grid{37, 22, kSize / 37, kSize / 22};
-        Shell           shell    = shellOf(grid, disc(10), ridges(), 12);
+        Shell           shell    = cutAslant(shellOf(grid, disc(10), ridges(), 12));
         shell.bending.edges      = {clamped, supported, guided, free};
         shell.stressEdges        = {free, supported, guided, clamped};
         shell.bending.foundation = 1e7;

@@ -78,6 +78,14 @@ TEST_F(ShellOnProcessor, HasTheBitsOfTheHostWhateverGridMapCurvatureAndEdges)
         }
 }
 
+TEST_F(ShellOnProcessor, HasTheBitsOfTheHostWhereTheShellEndsWithinTheWindow)
+{
+    const PlateGrid grid  = square(40);
+    const Shell     shell = cutAslant(shellOf(grid, wart(10), constant(1, 0.5, 0.3), 8));
+    const NodeField load  = fingertip(grid, 3e-3, -2e-3);
+    expectTheHosts(solved(shell, {&load, 1}), shell, {&load, 1}, "cut aslant");
+}
+
 TEST_F(ShellOnProcessor, SolvesForSeveralLoadsTogether)
 {
     const PlateGrid        grid  = square(32);

@@ -18,7 +18,7 @@ using std::sqrt;
 
 /// What varies over a level, relative to its means; in floats, as kernels have it.
 struct LevelMaps {
-    std::vector<float> rigidity, compliance, shape;
+    std::vector<float> rigidity, compliance, shape, stressShape;
     std::vector<float> curvatureX, curvatureZ, curvatureXZ; ///< times what makes them entries [1]
 };
 
@@ -50,10 +50,10 @@ std::vector<float> coarser(const std::vector<float>& fine, const PlateLevel& fro
 
 LevelMaps coarser(const LevelMaps& fine, const PlateLevel& from, const PlateLevel& to)
 {
-    return {
-        coarser(fine.rigidity, from, to, Mean::geometric),    coarser(fine.compliance, from, to, Mean::geometric),
-        coarser(fine.shape, from, to, Mean::arithmetic),      coarser(fine.curvatureX, from, to, Mean::arithmetic),
-        coarser(fine.curvatureZ, from, to, Mean::arithmetic), coarser(fine.curvatureXZ, from, to, Mean::arithmetic)};
+    return {coarser(fine.rigidity, from, to, Mean::geometric),    coarser(fine.compliance, from, to, Mean::geometric),
+            coarser(fine.shape, from, to, Mean::arithmetic),      coarser(fine.stressShape, from, to, Mean::arithmetic),
+            coarser(fine.curvatureX, from, to, Mean::arithmetic), coarser(fine.curvatureZ, from, to, Mean::arithmetic),
+            coarser(fine.curvatureXZ, from, to, Mean::arithmetic)};
 }
 
 std::vector<float> scaled(const NodeField& field, double factor)
@@ -87,6 +87,7 @@ void assemble(ShellLevel& level, const LevelMaps& maps, bool exact, const HostKe
                    maps.rigidity.data(),
                    maps.compliance.data(),
                    maps.shape.empty() ? nullptr : maps.shape.data(),
+                   maps.stressShape.empty() ? nullptr : maps.stressShape.data(),
                    maps.curvatureX.data(),
                    maps.curvatureZ.data(),
                    maps.curvatureXZ.data()};
@@ -137,11 +138,13 @@ void makeLevels(const Shell& shell, const HostKernels& kernels, std::vector<Shel
     const double        compliance = geometricMean(shell.membraneCompliance.values());
     const PlateGrid&    grid       = shell.bending.grid;
     const double        entry      = grid.spacingX * grid.spacingZ / sqrt(rigidity * compliance); // of a curvature [m]
+    const Plate         membrane   = membraneOf(shell);
     const GridHierarchy bending    = gridHierarchy(shell.bending, rigidity);
-    const GridHierarchy stress     = gridHierarchy(membraneOf(shell), compliance);
+    const GridHierarchy stress     = gridHierarchy(membrane, compliance);
     LevelMaps           maps{scaled(shell.bending.rigidity, 1 / rigidity),
                    scaled(shell.membraneCompliance, 1 / compliance),
                    scaled(shell.bending.foundationShape, 1),
+                   scaled(membrane.foundationShape, 1),
                    scaled(shell.curvatureX, entry),
                    scaled(shell.curvatureZ, entry),
                    scaled(shell.curvatureXZ, entry)};
@@ -224,6 +227,7 @@ void ShellCoarseSolver::collect(const ShellLevel& level)
     for (int i = 0; i <= l.cellsX; ++i)
         for (int j = 0; j <= l.cellsZ; ++j) {
             add(i, j, 0, i, j, 0, level.exactAt(kBed, i, j));
+            add(i, j, 1, i, j, 1, -level.exactAt(kStressBed, i, j));
             const auto inside = [&](const SharedEntry& e) {
                 return i + e.di >= 0 && i + e.di <= l.cellsX && j + e.dj >= 0 && j + e.dj <= l.cellsZ;
             };
