@@ -398,9 +398,6 @@ struct NeighbourIndex::Impl {
     void gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                      std::vector<std::uint32_t>& found) const;
 
-    void gatherRising(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
-                      std::vector<std::uint32_t>& found) const;
-
     /// Fills `candidates` with at least the k nearest.
     /// \return  false unless all of them are within `start` [index units]
     [[nodiscard]] bool findCandidates(const FloatSphere& sphere, double start, std::size_t k,
@@ -436,35 +433,20 @@ void NeighbourIndex::Impl::gather(const FloatSphere& sphere, const glm::dvec3& c
 void NeighbourIndex::Impl::gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                                        std::vector<std::uint32_t>& found) const
 {
-    const Shell  shell   = sphere.shell(radius * frame.scale);
-    const double radius2 = radius * radius;
-    eachBatch(sphere, radius * frame.scale, [&](std::span<const std::uint32_t> numbers, float&) {
-        for (const std::uint32_t number : numbers) {
-            float distance2[kBlockPoints];
-            for (auto near = filter.measure(blocks[number], shell, distance2); near != 0; near &= near - 1) {
-                const auto lane = std::uint32_t(std::countr_zero(near)), rank = number * kBlockPoints + lane;
-                if (distance2[lane] <= shell.inner2 || squaredDistance(exact[rank], centre) <= radius2)
-                    found.push_back(rank);
-            }
-        }
-    });
-}
-
-void NeighbourIndex::Impl::gatherRising(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
-                                        std::vector<std::uint32_t>& found) const
-{
-    constexpr std::uint32_t    kWhole  = 0xffffffff;
-    const Shell                shell   = sphere.shell(radius * frame.scale);
-    const double               radius2 = radius * radius;
-    const auto                 surely  = [&](float distance2) { return distance2 <= shell.inner2; };
-    std::vector<std::uint32_t> near;
+    constexpr std::uint32_t kWhole  = 0xffffffff;
+    const Shell             shell   = sphere.shell(radius * frame.scale);
+    const double            radius2 = radius * radius;
+    const auto              surely  = [&](float distance2) { return distance2 <= shell.inner2; };
     tree.query(sphere.centre(), sphere.searchRadius(radius * frame.scale),
-               [&](std::uint32_t block, float&) { near.push_back(block); });
-    std::sort(near.begin(), near.end());
-    found.resize(near.size() * kBlockPoints);
+               [&](std::uint32_t block, float&) { found.push_back(block); });
+    std::sort(found.begin(), found.end());
+    // The blocks wait at the end of the room for all of their points: those of one never reach the next.
+    const std::size_t blocksNear = found.size(), from = blocksNear * (kBlockPoints - 1);
+    found.resize(blocksNear * kBlockPoints);
+    std::copy_backward(found.begin(), found.begin() + std::ptrdiff_t(blocksNear), found.end());
     std::uint32_t* to = found.data();
-    for (const std::uint32_t number : near) {
-        const std::uint32_t first = number * kBlockPoints;
+    for (std::size_t k = 0; k < blocksNear; ++k) {
+        const std::uint32_t number = found[from + k], first = number * kBlockPoints;
         float               distance2[kBlockPoints];
         std::uint32_t       inside = filter.measure(blocks[number], shell, distance2);
         if (inside == kWhole && std::all_of(distance2, distance2 + kBlockPoints, surely)) {
@@ -632,16 +614,6 @@ void NeighbourIndex::gatherRanks(const glm::dvec3& centre, double radius, std::v
     const Impl& index = *impl_;
     if (const auto sphere = index.sphereFor(centre, radius))
         index.gatherRanks(*sphere, centre, radius, found);
-    else
-        index.eachWithin(centre, radius, [&](std::size_t rank) { found.push_back(std::uint32_t(rank)); });
-}
-
-void NeighbourIndex::gatherRising(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const
-{
-    found.clear();
-    const Impl& index = *impl_;
-    if (const auto sphere = index.sphereFor(centre, radius))
-        index.gatherRising(*sphere, centre, radius, found);
     else
         index.eachWithin(centre, radius, [&](std::size_t rank) { found.push_back(std::uint32_t(rank)); });
 }

@@ -52,12 +52,9 @@ public:
     /// \param side  [m] about that of the cubes, which is a power of two times that of the finest, to a factor of 1.42
     [[nodiscard]] std::vector<std::uint32_t> cubes(double side) const;
 
-    /// Does what gather() does, with ranks in place of points.
+    /// Does what gather() does, with ranks in place of points, in rising order: what is read of hundreds of thousands of
+    /// points then comes from memory in order too, and what is taken of some of them hangs on no tree.
     void gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
-
-    /// Does the same, in rising order: what is read of hundreds of thousands of points then comes from memory in order
-    /// too.
-    void gatherRising(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
 
     /// Replaces `points` by those that have the ranks.
     void pointsOf(std::span<const std::uint32_t> ranks, std::vector<std::uint32_t>& points) const;

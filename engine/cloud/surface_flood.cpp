@@ -155,7 +155,7 @@ void SurfaceFlood::floodByGrid(double longest)
 std::span<const std::uint32_t> SurfaceFlood::reach(const glm::dvec3& centre, double radius,
                                                    const std::optional<glm::dvec3>& outward)
 {
-    object_.index().gatherRising(centre, radius, gathered_);
+    object_.index().gatherRanks(centre, radius, gathered_);
     found_.clear();
     for (const std::uint32_t number : reachIn(gathered_, centre, outward)) found_.push_back(gathered_[number]);
     object_.index().pointsOf(found_, points_);

@@ -73,6 +73,7 @@ constexpr double kWidest = 32; ///< largest ball of a search for noise, and for 
 constexpr int kMedians = 2;
 
 constexpr std::size_t kTogether   = 8;   ///< points along the curve that share a search for noise
+constexpr double      kNearMiddle = 0.5; ///< [radius] within which they do: where the curve jumps, the next is far away
 constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are looked at
 
 } // namespace
@@ -146,7 +147,7 @@ LocalShape SurfaceSurvey::Measuring::faceWithin(std::uint32_t point, double radi
     return fitter_.fitFace(away_, radius, survey_.spacings_[point]);
 }
 
-/// Sets away_ from the points found, of very many evenly spread ones.
+/// Sets away_ from the points found, of very many evenly spread ones: by rank, neighbours follow one another.
 void SurfaceSurvey::Measuring::takeAway(std::uint32_t point)
 {
     const std::size_t step = (found_.size() + kMostOfBall - 1) / kMostOfBall;
@@ -230,18 +231,19 @@ void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const st
 /// deviation, which is then noise; a deviation of 0 if it grows with every ball, as that of an edge does.
 SurfaceSurvey::Measuring::WideShape SurfaceSurvey::Measuring::settledShape(std::uint32_t point)
 {
-    const double spacing = survey_.spacings_[point];
-    LocalShape   narrow  = faceWithin(point, kReach * spacing);
-    int          settled = 0;
+    const double    spacing = survey_.spacings_[point];
+    LocalShape      narrow  = faceWithin(point, kReach * spacing);
+    int             settled = 0;
+    const WideShape none{{}, point, 2 * kReach * spacing};
     for (double radius = 2 * kReach * spacing; radius <= kWidest * spacing; radius *= 2) {
         const LocalShape wide = faceWithin(point, radius);
         const double     most = wide.apart > 0 ? kSettledOnFace : kSettled;
         settled               = wide.residual < most * narrow.residual ? settled + 1 : 0;
-        if (settled > 0 && wide.tails < kTwoFaces) return {};
+        if (settled > 0 && wide.tails < kTwoFaces) return none;
         if (settled == 2 || (settled == 1 && 2 * radius > kWidest * spacing)) return {wide, point, radius};
         narrow = wide;
     }
-    return {};
+    return none;
 }
 
 /// Returns whether the deviation of the two faces in the ball that was gathered last is that of most of its points.
@@ -283,9 +285,10 @@ void SurfaceSurvey::Measuring::measureNoise(const RankRun& run)
     WideShape   last;
     for (std::uint32_t point = run.begin; point < run.end; ++point) {
         if (!(survey_.noises_[point] > kClean * survey_.spacings_[point])) continue;
-        if (++since > kTogether) {
+        const glm::dvec3 away = positions_[point] - positions_[last.middle];
+        if (++since > kTogether || glm::length(away) > kNearMiddle * last.radius) {
             last = settledShape(point);
-            if (!isNoiseEverywhere(last)) last = {};
+            if (!isNoiseEverywhere(last)) last.shape = {};
             since = 1;
         }
         if (last.shape.residual > 0)
@@ -325,19 +328,26 @@ SurfaceSurvey::SurfaceSurvey(const NeighbourIndex& index, std::span<const glm::v
     };
     // Most runs have nothing to do in all but the first of these, and say so quickly.
     eachRun([](Measuring& m, const RankRun& run) { m.measureShapes(run); });
-    const std::vector<std::uint8_t> layered = sided_;
-    eachRun([&](Measuring& m, const RankRun& run) { m.adoptSides(run, layered); });
+    const auto adoptSides = [&] {
+        const std::vector<std::uint8_t> layered = sided_;
+        eachRun([&](Measuring& m, const RankRun& run) { m.adoptSides(run, layered); });
+    };
+    adoptSides();
     eachRun([](Measuring& m, const RankRun& run) { m.measureNoise(run); });
     for (int round = 0; round < kMedians; ++round) {
         const std::vector<float> raw = noises_;
         eachRun([&](Measuring& m, const RankRun& run) { m.settleNoise(run, raw); });
     }
     // Faces count where there is noise: a ball about the rim of a clean body has two as well.
+    bool found = false;
     for (std::size_t rank = 0; rank < points.size(); ++rank) {
         if (faces[rank] == glm::vec3(0) || !(noises_[rank] > kNoisySpacings * spacings_[rank])) continue;
         normals_[rank] = faces[rank];
         sided_[rank]   = 1;
+        found          = true;
     }
+    // One search in a hundred finds no faces, because the deviations of some hundred points scatter by some per cent.
+    if (found) adoptSides();
     byPoint_.resize(points.size());
     for (std::size_t rank = 0; rank < points.size(); ++rank) byPoint_[points[rank]] = spacings_[rank];
     takeSides(given);

@@ -680,12 +680,12 @@ Surroundings surroundingsOf(const SoftObject& object, std::uint32_t nearest, con
     constexpr std::size_t      kLooked = 500;                          // points
     const SurfaceSurvey&       survey  = object.survey();
     std::vector<std::uint32_t> near;
-    object.index().gather(place, kReach * side, near);
+    object.index().gatherRanks(place, kReach * side, near);
     const std::size_t step   = near.size() / kLooked + 1;
     double            turned = 0, spacings = 0, all = 0;
     for (std::size_t k = 0; k < near.size(); k += step, ++all) {
-        turned += std::abs(glm::dot(survey.normal(near[k]), survey.normal(nearest))) < kAlike;
-        spacings += survey.spacing(near[k]);
+        turned += std::abs(glm::dot(survey.normalOfRank(near[k]), survey.normal(nearest))) < kAlike;
+        spacings += survey.spacingOfRank(near[k]);
     }
     return {spacings / all, turned <= kFew * all};
 }

@@ -61,7 +61,7 @@ void expectGather(const NeighbourIndex& index, const Points& points, const glm::
         << "radius " << radius << " at " << centre.x << ", " << centre.y << ", " << centre.z;
 
     std::vector<std::uint32_t> rising, inOrder;
-    index.gatherRising(centre, radius, rising);
+    index.gatherRanks(centre, radius, rising);
     EXPECT_TRUE(std::is_sorted(rising.begin(), rising.end()));
     index.pointsOf(rising, inOrder);
     std::sort(inOrder.begin(), inOrder.end());

@@ -88,7 +88,7 @@ Reached flood(const SoftObject& object, const glm::dvec3& centre, double radius,
               double sparser)
 {
     std::vector<std::uint32_t> ranks;
-    object.index().gatherRising(centre, radius, ranks);
+    object.index().gatherRanks(centre, radius, ranks);
     SurfaceFlood from(object);
     Reached      reached;
     const auto   found   = from.reachIn(ranks, centre, outward, sparser);

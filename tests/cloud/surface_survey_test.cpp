@@ -98,8 +98,9 @@ TEST(SurfaceSurvey, FindsTheNoiseOfTheFacesOfAThinBody)
                 wrong += !survey.sided(n) || (survey.normal(n).z > 0) != (n < above);
             }
             EXPECT_NEAR(quantile(found, 0.5), 1, 0.06) << "as of one sheet; a cut between faces trims the heaps' tails";
-            EXPECT_LT(double(wrong) / double(points.size()), 4 * body.noise < body.thickness ? 0.03 : 0.09)
-                << "at four times the noise 2.3 % lie on the other side of the middle, and 5 % are not told apart";
+            EXPECT_LT(double(wrong) / double(points.size()), 4 * body.noise < body.thickness ? 0.001 : 0.026)
+                << "at four times the noise 2.3 % lie on the other side of the middle; 0.2 % were left without a side, "
+                   "or had the wrong one, where the curve along which points share a search jumps";
         }
 }
 

@@ -413,7 +413,7 @@ TEST(TouchedSurface, ABallOfACurvedSurfaceIsTakenWhole)
     const Sample&    sample = sampleNamed("ellipsoid");
     const SoftObject object(makeSample(sample, 40'000, 1), sample.material);
     Ball             ball{{}, {}, sample.place, 30e-3};
-    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
+    object.index().gatherRanks(ball.centre, ball.radius, ball.ranks);
     object.index().pointsOf(ball.ranks, ball.points);
     EXPECT_TRUE(touchedSurface(object, {sample.place, {0, 0, 1}}, ball).whole());
     std::reverse(ball.ranks.begin(), ball.ranks.end());

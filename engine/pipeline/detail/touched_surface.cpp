@@ -205,7 +205,7 @@ void TouchedSurface::turnOver()
 Ball ballOf(const SoftObject& object, const glm::dvec3& centre, double radius)
 {
     Ball ball{{}, {}, centre, radius};
-    object.index().gatherRising(ball.centre, ball.radius, ball.ranks);
+    object.index().gatherRanks(ball.centre, ball.radius, ball.ranks);
     object.index().pointsOf(ball.ranks, ball.points);
     return ball;
 }
