@@ -58,6 +58,17 @@ std::string placeText(const glm::dvec3& place, double diagonal)
     return text;
 }
 
+namespace {
+
+/// Says that a scene holds an object of which nothing is held; empty else.
+std::vector<std::string> heldInVain(const Scene& scene)
+{
+    if (!scene.held.isThere() || scene.patch.windowOf == WindowOf::object) return {};
+    return {"what the key held says has no effect in a patch window that is not the object's; set --window object"};
+}
+
+} // namespace
+
 std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& report)
 {
     std::vector<std::string> said = unusedVariables();
@@ -68,6 +79,7 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
         said.push_back("no stiffness in the file: uniform " + formatQuantity(kDefaultModulus, "Pa") +
                        " assumed; set --uniform or --stiffness");
     said.insert(said.end(), report.warnings.begin(), report.warnings.end());
+    for (std::string& line : heldInVain(scene)) said.push_back(std::move(line));
     for (std::string& line : beyondComparedTissue(scene)) said.push_back(std::move(line));
     return said;
 }
