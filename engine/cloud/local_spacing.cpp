@@ -272,7 +272,7 @@ std::vector<double> localSpacingsByRank(const NeighbourIndex& index)
 {
     if (!(index.spacing() > 0))
         throw Error("the cloud has fewer than seven points or most of them coincide, so there is no surface "
-                    "to touch; are there duplicates?");
+                    "to touch; are there duplicates, or is the length unit another?");
     std::vector<double> guess(index.size()), spacings(index.size());
     inCurveRuns(index.size(), [&] { return GuessingSpacings(index, guess); });
     inCurveRuns(index.size(), [&] { return SettlingSpacings(index, guess, spacings); });

@@ -33,13 +33,16 @@ LoadedCloud readCloud(const std::filesystem::path& path, const CloudReadSettings
     return parseCloud(file, size, path.string(), format, settings);
 }
 
-std::vector<NamedField> fieldsBeside(const LoadedCloud& loaded, std::span<const double> stiffening)
+FieldsBeside::FieldsBeside(const LoadedCloud& loaded, std::span<const double> stiffening)
 {
-    std::vector<NamedField> fields;
-    if (!loaded.foundation.empty()) fields.push_back({"foundation", "Pa/m", loaded.foundation});
-    if (!loaded.held.empty()) fields.push_back({"held", "1", loaded.held});
-    if (!stiffening.empty()) fields.push_back({"stiffening", "1/m", stiffening});
-    return fields;
+    if (!loaded.foundation.empty()) fields_.push_back({"foundation", "Pa/m", loaded.foundation});
+    if (!stiffening.empty()) fields_.push_back({"stiffening", "1/m", stiffening});
+    if (!loaded.held.empty()) fields_.push_back({"held", "1", loaded.held});
+    for (int k = 0; k < 3 && !loaded.normals.empty(); ++k) {
+        std::vector<double>& component = normals_[std::size_t(k)];
+        for (const glm::vec3& normal : loaded.normals) component.push_back(double(normal[k]));
+        fields_.push_back({std::string("n") + "xyz"[k], "", component});
+    }
 }
 
 void formatCloud(std::ostream& stream, CloudFormat format, const PointCloud& cloud,

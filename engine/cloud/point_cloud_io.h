@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -70,6 +71,7 @@ struct CloudFileReport {
     std::size_t                  scatteredPoints    = 0;     ///< over the faces, in place of the file's; 0: none were
     double                       scatterDistance    = 0;     ///< least between two of them [m]
     std::vector<std::string>     properties;                 ///< scalar properties of a point, in file order
+    std::vector<std::string>     unused;                     ///< those of them that say nothing that is known
     std::string                  lengthUnitSource;           ///< such as "mm, from the file's comment"
     std::string                  stiffnessSource;            ///< which property, its unit, and why
     std::optional<PropertyRange> stiffnessProperty;          ///< of the values before a range; empty if uniform
@@ -131,9 +133,24 @@ struct NamedField {
     std::span<const double> values; ///< one per point, in `unit`
 };
 
-/// Returns what a file says of a cloud's points beside their stiffness, to be written again.
-/// \param stiffening  in place of the file's [1/m]; it and `loaded` outlive the fields
-[[nodiscard]] std::vector<NamedField> fieldsBeside(const LoadedCloud& loaded, std::span<const double> stiffening);
+/// What a file says of a cloud's points beside their stiffness, to be written again: foundation, stiffening, held, and
+/// their normals as nx, ny, nz.
+class FieldsBeside {
+public:
+    /// \param loaded  outlives this
+    explicit FieldsBeside(const LoadedCloud& loaded) : FieldsBeside(loaded, loaded.stiffening) {}
+
+    /// \param stiffening  in place of the file's [1/m]; outlives this, too
+    FieldsBeside(const LoadedCloud& loaded, std::span<const double> stiffening);
+    FieldsBeside(const FieldsBeside&)            = delete;
+    FieldsBeside& operator=(const FieldsBeside&) = delete;
+
+    [[nodiscard]] std::span<const NamedField> all() const noexcept { return fields_; }
+
+private:
+    std::array<std::vector<double>, 3> normals_; ///< [1] by component
+    std::vector<NamedField>            fields_;
+};
 
 struct CloudWriteSettings {
     CloudEncoding             encoding = CloudEncoding::binaryLittleEndian; ///< of PLY and PCD

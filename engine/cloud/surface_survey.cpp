@@ -371,7 +371,7 @@ void SurfaceSurvey::expectSurface() const
 {
     if (spacings_.empty())
         throw Error("the cloud has fewer than seven points or most of them coincide, so there is no surface "
-                    "to touch; are there duplicates?");
+                    "to touch; are there duplicates, or is the length unit another?");
 }
 
 } // namespace palp

@@ -82,8 +82,12 @@ HandPath strokingHand(const FeltLine& line, const HandScript& script, const Soft
 
 FeltRange rangeOf(const std::vector<double>& along, const std::vector<double>& logarithms)
 {
+    std::vector<double> sorted = along;
+    std::ranges::sort(sorted);
+    const bool isNear =
+        std::ranges::adjacent_find(sorted, [](double a, double b) { return b - a <= kPassing; }) != sorted.end();
     return {largestRange(along, logarithms, std::numeric_limits<double>::infinity()),
-            largestRange(along, logarithms, kPassing)};
+            isNear ? largestRange(along, logarithms, kPassing) : std::numeric_limits<double>::quiet_NaN()};
 }
 
 } // namespace

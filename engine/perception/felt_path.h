@@ -70,7 +70,7 @@ struct FeltStroke {
 /// The logarithm of the ratio of the stiffest to the softest place [1].
 struct FeltRange {
     double whole   = 0; ///< along all of the path
-    double passing = 0; ///< within kPassing: places that can be compared without memory
+    double passing = 0; ///< within kPassing: places that can be compared without memory; NaN: no two are so near
 };
 inline constexpr double kPassing = 5e-3; ///< about a fingertip's width [m]
 

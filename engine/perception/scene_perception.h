@@ -14,7 +14,7 @@ namespace palp {
 struct NoticedSteps {
     double weber   = 0; ///< W [1]
     double whole   = 0; ///< J between the stiffest and the softest place of the path
-    double passing = 0; ///< J within kPassing
+    double passing = 0; ///< J within kPassing; NaN: no two places are so near
     double floor   = 0; ///< J of the whole path on the homogeneous object: an artefact
     double right   = 0; ///< rightAnswers() for `whole`: stiffest and softest place side by side [1]
 };

@@ -55,11 +55,11 @@ Extent extentOf(std::span<const glm::dvec3> positions, int axis)
     return {*low, *high};
 }
 
-/// Returns the point of the largest z; of a flat top the one in its middle. There the largest z is noise, or all points
-/// have it, and the first may lie in a corner.
+/// Returns the point of the largest z; of a flat top, or a level ridge, the one in its middle. There the largest z is
+/// noise, or all points have it, and the first may lie in a corner, or at an end.
 glm::dvec3 highestOf(const PointCloud& cloud)
 {
-    constexpr double kFlat     = 0.9; // of the cloud's width, both ways, is within a spacing of the largest z [1]
+    constexpr double kFlat     = 0.9; // of the cloud's width, one way, is within a spacing of the largest z [1]
     const auto       positions = cloud.positions();
     const Extent     x = extentOf(positions, 0), y = extentOf(positions, 1);
     const double     spacing = std::sqrt(x.width() * y.width() / double(cloud.size())); // [m] of a flat cloud
@@ -78,8 +78,8 @@ glm::dvec3 highestOf(const PointCloud& cloud)
         high = glm::max(high, p);
         if (aside(p) < aside(inside)) inside = p;
     }
-    const bool isFlat = high.x - low.x >= kFlat * x.width() && high.y - low.y >= kFlat * y.width();
-    return isFlat ? inside : highest;
+    const bool isLevel = high.x - low.x >= kFlat * x.width() || high.y - low.y >= kFlat * y.width();
+    return isLevel ? inside : highest;
 }
 
 } // namespace

@@ -126,6 +126,8 @@ TEST(StlFile, ARefusalNamesThePlaceAndWhatWasExpected)
 {
     const std::string whole = binary(kTwo);
     EXPECT_TRUE(contains(refusal(whole.substr(0, 170)), {"test: byte 80", "184 bytes for 2 triangles", "found 170"}));
+    const std::string solid = binary(kTwo, "solid made by a program that should not");
+    EXPECT_TRUE(contains(refusal(solid.substr(0, 170)), {"test: byte 80", "184 bytes for 2 triangles", "found 170"}));
     EXPECT_TRUE(contains(refusal("nonsense"), {"test: byte 0: expected an STL file", "8 other bytes"}));
     EXPECT_TRUE(contains(refusal(""), {"test: byte 0"}));
     EXPECT_TRUE(contains(refusal(binary({})), {"test", "at least one point"}));

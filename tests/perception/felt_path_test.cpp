@@ -129,6 +129,9 @@ TEST(FeltPath, AHandThatAWallHoldsIsSaidToBeHeld)
     std::vector<FeltTick> ticks{{0, 100, false}, {1e-3, 200, false}, {2e-3, 1e4, true}, {2e-3, 1, true}};
     EXPECT_EQ(heldShare(ticks), 0.5);
     EXPECT_NEAR(rangeOf(ticks).whole, std::log(2.0), 1e-12) << "held ticks do not count";
+    EXPECT_NEAR(rangeOf(ticks).passing, std::log(2.0), 1e-12);
+    ticks[1].along = 1.1 * kPassing;
+    EXPECT_TRUE(std::isnan(rangeOf(ticks).passing)) << "no two places are so near that they could be compared";
 }
 
 TEST(FeltPath, TheHomogeneousTwinHasTheGeometricMeanEverywhere)

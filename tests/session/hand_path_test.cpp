@@ -419,6 +419,8 @@ TEST(GeneratedHand, AFlatCloudIsTouchedInItsMiddleAndACurvedOneAtItsTop)
     EXPECT_LT(glm::length(placeOn(square([&](const glm::dvec2&) { return noise(); })) - middle), 1e-3);
     const auto box = [](const glm::dvec2& at) { return at.x > 2e-3 && at.x < 98e-3 ? 0.0 : -20e-3; };
     EXPECT_EQ(placeOn(square(box)), middle) << "a flat top";
+    const auto ridge = [](const glm::dvec2& at) { return -std::pow(at.x - 30e-3, 2) / 0.1; };
+    EXPECT_LT(glm::length(placeOn(square(ridge)) - glm::dvec3(30e-3, 50e-3, 0)), 1e-9) << "and not an end of it";
     const glm::dvec2 top(30e-3, 60e-3);
     const auto       dome = [&](const glm::dvec2& at) { return -glm::dot(at - top, at - top) / 0.1; };
     EXPECT_LT(glm::length(placeOn(square(dome)) - glm::dvec3(top, 0)), 1e-9);

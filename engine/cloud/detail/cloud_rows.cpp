@@ -465,8 +465,11 @@ LoadedCloud CloudRows::finish()
     report_.format             = header_.format;
     report_.points             = positions_.size();
     report_.coordinateRounding = metresPerUnit_ * rounding_.step();
-    for (const std::string& property : header_.properties)
-        report_.properties.push_back(shownText(property, kMostOfWord));
+    for (std::size_t n = 0; n < header_.properties.size(); ++n) {
+        report_.properties.push_back(shownText(header_.properties[n], kMostOfWord));
+        const bool used = std::ranges::any_of(columns_, [&](const auto& column) { return column == n; });
+        if (!used) report_.unused.push_back(report_.properties.back());
+    }
     LoadedCloud loaded{PointCloud(std::move(positions_), std::move(stiffness_), kind_), std::move(report_)};
     loaded.report.normals = !normals_.empty();
     loaded.normals        = std::move(normals_);

@@ -203,13 +203,16 @@ std::optional<std::uint32_t> statedTriangles(std::istream& stream, std::uint64_t
     return loadAs<std::uint32_t>(reinterpret_cast<const std::byte*>(head.data()) + kHeader, std::endian::little);
 }
 
-bool beginsWithSolid(std::istream& stream)
+/// Returns whether a file begins as text: some programs begin the header of a binary one with "solid" too, but have
+/// zeros behind it, in the number of triangles at the latest.
+bool isText(std::istream& stream)
 {
-    std::array<char, 5> word{};
-    stream.read(word.data(), std::streamsize(word.size()));
+    std::array<char, kBefore> head{};
+    stream.read(head.data(), std::streamsize(head.size()));
+    const std::string_view start(head.data(), std::size_t(stream.gcount()));
     stream.clear();
     stream.seekg(0);
-    return std::string_view(word.data(), word.size()) == "solid";
+    return start.starts_with("solid") && start.find('\0') == std::string_view::npos;
 }
 
 } // namespace
@@ -223,7 +226,7 @@ LoadedCloud parseStl(std::istream& stream, std::uint64_t size, const std::string
     const bool isWhole  = triangles && size == kBefore + kTriangle * *triangles;
     const bool isPadded = triangles && *triangles > 0 && size > kBefore + kTriangle * *triangles;
     const bool isBinary = isWhole || isPadded;
-    const bool isAscii  = !isBinary && beginsWithSolid(stream);
+    const bool isAscii  = !isBinary && isText(stream);
     ByteReader reader(stream, size, name);
     if (isBinary) return parseBinary(reader, settings);
     if (isAscii) return AsciiParser(reader, settings).parse();

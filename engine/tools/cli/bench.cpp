@@ -77,8 +77,8 @@ void check(const BenchOptions& o)
     for (const int nodes : o.nodes)
         if (nodes < kFewestNodes || nodes > kMostNodes || nodes % 4 != 1)
             throw Error("--nodes: expected " + std::to_string(kFewestNodes) + " to " + std::to_string(kMostNodes) +
-                        " nodes a side and a multiple of 4 and 1 (the error of the grid is found from one twice as "
-                        "coarse), found " +
+                        " nodes a side, one more than a multiple of 4 (the error of the grid is found from one twice "
+                        "as coarse), found " +
                         std::to_string(nodes));
     constexpr int kMostQuick = 257;
     for (const int nodes : o.nodes)

@@ -84,6 +84,22 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
     return said;
 }
 
+std::vector<std::string> leftUnwritten(const LoadedCloud& loaded, const CloudFormatRecord& target)
+{
+    constexpr std::size_t    kNamed = 8;
+    std::vector<std::string> said;
+    if (!target.holdsFaces && !loaded.faces.empty())
+        said.push_back(counted(loaded.faces.size(), "triangle", "was", "were") + " not written: only " +
+                       extensionsFor(CloudUse::writingFaces) + " files hold faces; name such a file to keep them");
+    const std::vector<std::string>& unused = loaded.report.unused;
+    if (unused.empty()) return said;
+    std::string names;
+    for (std::size_t n = 0; n < std::min(kNamed, unused.size()); ++n) names += (n > 0 ? ", " : "") + unused[n];
+    if (unused.size() > kNamed) names += " and " + std::to_string(unused.size() - kNamed) + " more";
+    said.push_back("not written: " + names + "; nothing was read from " + (unused.size() == 1 ? "it" : "them"));
+    return said;
+}
+
 std::vector<std::string> huntNote(const Scene& scene, const PointCloud& cloud)
 {
     const study::HiddenNodules* const hidden = study::hiddenIn(scene);

@@ -25,6 +25,10 @@ namespace palp {
 [[nodiscard]] std::vector<std::string> cloudWarnings(const Scene& scene, const PointCloud& cloud,
                                                      const CloudFileReport& report);
 
+/// Returns in sentences what of a file is not in the one that is written of its cloud: faces that the format does not
+/// hold, and properties that nothing was read from.
+[[nodiscard]] std::vector<std::string> leftUnwritten(const LoadedCloud& loaded, const CloudFormatRecord& target);
+
 /// Returns what a hunt has hidden in the scene, for commands that do not score it; empty if there is none.
 [[nodiscard]] std::vector<std::string> huntNote(const Scene& scene, const PointCloud& cloud);
 

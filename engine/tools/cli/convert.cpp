@@ -1,4 +1,3 @@
-#include <array>
 #include <iostream>
 #include <memory>
 
@@ -6,7 +5,6 @@
 
 #include "engine/cloud/cloud_format.h"
 #include "engine/core/contract.h"
-#include "engine/core/counted.h"
 #include "engine/session/scene_mesh.h"
 #include "engine/tools/cli/cloud_report.h"
 #include "engine/tools/cli/commands.h"
@@ -22,24 +20,6 @@ struct ConvertOptions {
     bool        json = false, encodingGiven = false;
 };
 
-/// What a cloud has beside its stiffness as fields, which all formats can hold.
-struct OtherFields {
-    explicit OtherFields(const LoadedCloud& loaded)
-    {
-        const auto& [normals, stiffening, foundation] = std::tie(loaded.normals, loaded.stiffening, loaded.foundation);
-        if (!foundation.empty()) fields.push_back({"foundation", "Pa/m", foundation});
-        if (!stiffening.empty()) fields.push_back({"stiffening", "1/m", stiffening});
-        if (!loaded.held.empty()) fields.push_back({"held", "1", loaded.held});
-        for (int k = 0; k < 3 && !normals.empty(); ++k) {
-            for (const glm::vec3& normal : normals) values[std::size_t(k)].push_back(double(normal[k]));
-            fields.push_back({std::string("n") + "xyz"[k], "", values[std::size_t(k)]});
-        }
-    }
-
-    std::array<std::vector<double>, 3> values;
-    std::vector<NamedField>            fields; ///< foundation, stiffening, held, nx, ny, nz, or fewer
-};
-
 void convert(const ConvertOptions& options)
 {
     const CloudEncoding encoding = optionNamed<CloudEncoding>("--encoding", options.encoding);
@@ -51,12 +31,9 @@ void convert(const ConvertOptions& options)
     refuseSourceAsTarget("TARGET", scene.cloud, options.target);
     const LoadedCloud loaded = options.source.loadCloud(scene);
     const bool        faces  = target.holdsFaces;
-    const OtherFields others(loaded);
-    writeCloud(options.target, loaded.cloud, others.fields, {encoding, loaded.faces});
+    writeCloud(options.target, loaded.cloud, FieldsBeside(loaded).all(), {encoding, loaded.faces});
     std::vector<std::string> warnings = cloudWarnings(scene, loaded.cloud, loaded.report);
-    if (!faces && !loaded.faces.empty())
-        warnings.push_back(counted(loaded.faces.size(), "triangle", "was", "were") + " not written: only " +
-                           extensionsFor(CloudUse::writingFaces) + " files hold faces; name such a file to keep them");
+    for (std::string& line : leftUnwritten(loaded, target)) warnings.push_back(std::move(line));
     if (options.json) {
         nlohmann::json report = cloudJson(options.source.name, loaded.cloud, loaded.faces, loaded.report);
         report["written"]     = options.target;

@@ -25,12 +25,17 @@ struct InfoOptions {
     bool        json = false;
 };
 
-std::string span3(const nlohmann::json& low, const nlohmann::json& high)
+std::string span3(const Bounds& bounds)
 {
-    std::string text;
-    for (int k = 0; k < 3; ++k)
-        text += std::string(k ? ", " : "") + "xyz"[k] + " " + formatQuantity(low[std::size_t(k)], "m") + " to " +
-                formatQuantity(high[std::size_t(k)], "m");
+    constexpr double kFar = 100; // diagonals: three digits then say little of where the cloud lies [1]
+    std::string      text;
+    for (int k = 0; k < 3; ++k) {
+        if (std::abs(bounds.low[k]) > kFar * bounds.diagonal())
+            return placeText(bounds.low, bounds.diagonal()) + " m to " + placeText(bounds.high, bounds.diagonal()) +
+                   " m";
+        text += std::string(k ? ", " : "") + "xyz"[k] + " " + formatQuantity(bounds.low[k], "m") + " to " +
+                formatQuantity(bounds.high[k], "m");
+    }
     return text;
 }
 
@@ -91,7 +96,7 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
         properties += (properties.empty() ? "" : ", ") + property;
     std::cout << options.source.name << ": " << loaded.report.format << ", " << counted(loaded.cloud.size(), "point");
     if (loaded.report.droppedPoints) std::cout << " (" << loaded.report.droppedPoints << " dropped: NaN or infinity)";
-    std::cout << "\n  extent      " << span3(report["low"], report["high"]) << "\n  size        "
+    std::cout << "\n  extent      " << span3(loaded.cloud.bounds()) << "\n  size        "
               << sizeText(loaded.cloud.bounds()) << "\n  length unit " << loaded.report.lengthUnitSource << "\n";
     printText(quality, loaded.report.duplicatePositions);
     std::cout << "  stiffness   " << formatQuantity(report["stiffness_min"], unit) << " to "

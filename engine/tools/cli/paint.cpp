@@ -80,7 +80,7 @@ bool keepsOriginal(const PaintOptions& o, const Canvas& canvas, const Painted& p
 RepaintedPly write(const PaintOptions& o, const Canvas& canvas, const Painted& painted)
 {
     if (keepsOriginal(o, canvas, painted)) return repaintPly(canvas.file, canvas.scene.reading, painted.cloud, o.out);
-    writeCloud(o.out, painted.cloud, fieldsBeside(canvas.loaded, painted.stiffening.values),
+    writeCloud(o.out, painted.cloud, FieldsBeside(canvas.loaded, painted.stiffening.values).all(),
                {CloudEncoding::binaryLittleEndian, canvas.loaded.faces});
     return {propertyOf(painted.cloud.kind()), true};
 }
@@ -160,14 +160,13 @@ struct StrokeAccount {
 };
 
 /// Says what a reader of the new file has to know.
-void addWarnings(Canvas& canvas, const Painted& painted, const RepaintedPly& written)
+void addWarnings(const PaintOptions& o, Canvas& canvas, const Painted& painted, const RepaintedPly& written)
 {
     if (painted.changed + painted.stiffening.changed + painted.held.changed == 0)
         canvas.warnings.emplace_back("no stroke changed anything");
-    if (painted.hasNewFields() && isPly(canvas.file))
-        canvas.warnings.emplace_back(
-            "a stroke of stiffening or held makes a new file: of the original's properties only "
-            "those that Palpate knows and faces are kept");
+    if (!keepsOriginal(o, canvas, painted))
+        for (std::string& line : leftUnwritten(canvas.loaded, formatToWrite(o.out)))
+            canvas.warnings.push_back(std::move(line));
     if (painted.held.isPainted)
         canvas.warnings.emplace_back("what is held counts where a scene says --held own and --window object");
     if (!written.appended && !canvas.scene.reading.stiffnessProperty.empty())
@@ -239,7 +238,7 @@ void paint(const PaintOptions& o)
         painted.changed += painted.cloud.stiffness()[i] != cloud.stiffness()[i] ? 1 : 0;
     canvas.loaded.held         = painted.held.values;
     const RepaintedPly written = write(o, canvas, painted);
-    addWarnings(canvas, painted, written);
+    addWarnings(o, canvas, painted, written);
     print(o, canvas, painted, written, strokes);
 }
 

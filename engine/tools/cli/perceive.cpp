@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -125,7 +126,10 @@ void print(const PerceiveOptions& o, const Felt& felt, const ScenePerception& p,
         std::printf("%-26s", what);
         for (const NoticedSteps& n : noticed) {
             const double value = n.*number;
-            std::printf("%14s", (value < 0.1 ? formatNumber(value) : fixed(value, 2)).c_str());
+            std::printf("%14s", (std::isnan(value) ? "-"
+                                 : value < 0.1     ? formatNumber(value)
+                                                   : fixed(value, 2))
+                                    .c_str());
         }
         std::printf("\n");
     };

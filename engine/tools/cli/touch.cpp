@@ -143,12 +143,14 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     const auto           quantity = [&](const char* key, const char* unit) { return formatQuantity(r[key], unit); };
     const auto&          window   = r["window"];
     const auto&          error    = r["error"];
-    const auto&          at       = r["contact"]["point"];
+    const auto           pointOf  = [](const nlohmann::json& p) { return glm::dvec3(p[0], p[1], p[2]); };
+    const auto&          cloud    = r["cloud"];
+    const glm::dvec3     at       = pointOf(r["contact"]["point"]);
     const auto&          normal   = r["chart"]["normal"];
-    std::printf("%s, preset %s, %s at (%.4g, %.4g, %.4g) m, pressed against (%.2f, %.2f, %.2f)\n",
-                options.source.name.c_str(), name(scene.preset), formatQuantity(r["force"], "N").c_str(),
-                at[0].get<double>(), at[1].get<double>(), at[2].get<double>(), normal[0].get<double>(),
-                normal[1].get<double>(), normal[2].get<double>());
+    std::printf("%s, preset %s, %s at %s m, pressed against (%.2f, %.2f, %.2f)\n", options.source.name.c_str(),
+                name(scene.preset), formatQuantity(r["force"], "N").c_str(),
+                placeText(at, glm::length(pointOf(cloud["high"]) - pointOf(cloud["low"])) / 10).c_str(),
+                normal[0].get<double>(), normal[1].get<double>(), normal[2].get<double>());
     std::printf("  length unit        %s\n", r["cloud"]["length_unit_source"].get<std::string>().c_str());
     std::printf("  stiffness          %s\n", r["cloud"]["stiffness_source"].get<std::string>().c_str());
     std::printf("  scene              thickness %s, poisson %.3g, foundation %s, footprint radius %s\n",

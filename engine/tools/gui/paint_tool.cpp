@@ -100,7 +100,7 @@ bool PaintTool::save(const Stage& stage, const std::filesystem::path& folder)
         if (isPly && file) {
             property = repaintPly(source, stage.scene().reading, stage.painted().cloud(), target).property;
         } else if (file) {
-            writeCloud(target, stage.painted().cloud(), fieldsBeside(*file, file->stiffening), {.faces = file->faces});
+            writeCloud(target, stage.painted().cloud(), FieldsBeside(*file).all(), {.faces = file->faces});
         } else {
             writeCloud(target, stage.painted().cloud());
             notices_.complain(cloud + " has changed or gone: the painted file has its points, and no faces or other "

@@ -902,6 +902,35 @@ good 'a file of VTK as another' convert surface.vtk surface.ply --length-unit mm
 good 'which keeps faces and normals' info surface.ply
 holds '2 triangles of 2 faces'
 holds 'normals     in the file'
+cat >coloured.ply <<'PLY'
+ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+property float nx
+property float ny
+property float nz
+property uchar red
+property float stiffness
+element face 1
+property list uchar int vertex_indices
+end_header
+0 0 0 0 0 1 7 1000
+9 0 0 0 0 1 7 1000
+0 9 0 0 0 1 7 1000
+9 9 0 0 0 1 7 1000
+3 0 1 2
+PLY
+good 'a cloud with colours' convert coloured.ply colourless.csv --length-unit mm
+holds 'warning     1 triangle was not written'
+holds 'warning     not written: red; nothing was read from it'
+good 'painting it into another format' paint coloured.ply --length-unit mm --stroke 'at=0,0,0 radius=5mm value=2kPa' --out painted.csv
+holds 'warning     1 triangle was not written'
+holds 'warning     not written: red; nothing was read from it'
+good 'which keeps normals' info painted.csv
+holds 'normals     in the file'
 bad 'a format that is only read' 'surface2.vtk: expected a name that ends with' convert surface.ply surface2.vtk
 good 'a mesh of far vertices' info mesh.ply --scatter on
 holds 'a fingertip of 4.00 mm touches 5 triangles through about'
