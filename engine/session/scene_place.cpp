@@ -78,8 +78,17 @@ glm::dvec3 highestOf(const PointCloud& cloud)
         high = glm::max(high, p);
         if (aside(p) < aside(inside)) inside = p;
     }
-    const bool isLevel = high.x - low.x >= kFlat * x.width() || high.y - low.y >= kFlat * y.width();
-    return isLevel ? inside : highest;
+    const bool levelX = high.x - low.x >= kFlat * x.width(), levelY = high.y - low.y >= kFlat * y.width();
+    if (levelX && levelY) return inside;
+    if (!levelX && !levelY) return highest;
+    const double along  = levelX ? x.middle() : y.middle(); // of a ridge
+    const auto   fromIt = [&](const glm::dvec3& p) { return std::abs((levelX ? p.x : p.y) - along); };
+    glm::dvec3   top    = inside;
+    for (const glm::dvec3& p : positions) {
+        if (fromIt(p) > kReach * spacing || p.z > highest.z) continue;
+        if (p.z > top.z || (p.z == top.z && fromIt(p) < fromIt(top))) top = p;
+    }
+    return top;
 }
 
 } // namespace

@@ -902,27 +902,13 @@ good 'a file of VTK as another' convert surface.vtk surface.ply --length-unit mm
 good 'which keeps faces and normals' info surface.ply
 holds '2 triangles of 2 faces'
 holds 'normals     in the file'
-cat >coloured.ply <<'PLY'
-ply
-format ascii 1.0
-element vertex 4
-property float x
-property float y
-property float z
-property float nx
-property float ny
-property float nz
-property uchar red
-property float stiffness
-element face 1
-property list uchar int vertex_indices
-end_header
-0 0 0 0 0 1 7 1000
-9 0 0 0 0 1 7 1000
-0 9 0 0 0 1 7 1000
-9 9 0 0 0 1 7 1000
-3 0 1 2
-PLY
+{
+    printf 'ply\nformat ascii 1.0\nelement vertex 49\n'
+    printf 'property float %s\n' x y z nx ny nz
+    printf 'property uchar red\nproperty float stiffness\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n'
+    awk 'BEGIN { for (i = 0; i < 7; ++i) for (j = 0; j < 7; ++j) print i, j, 0, 0, 0, 1, 7, 1000 }'
+    echo 3 0 1 7
+} >coloured.ply
 good 'a cloud with colours' convert coloured.ply colourless.csv --length-unit mm
 holds 'warning     1 triangle was not written'
 holds 'warning     not written: red; nothing was read from it'
