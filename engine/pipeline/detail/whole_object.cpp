@@ -1,7 +1,10 @@
 #include "engine/pipeline/detail/whole_object.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <vector>
 
 #include "engine/chart/coverage.h"
@@ -15,7 +18,7 @@ namespace {
 /// The solver of shells converges up to 3e-3: dishes, lobes and gutters are 1 % too stiff by it.
 constexpr double kVoidOfPlates = 1e-4, kVoidOfShells = 3e-3;
 
-/// Beyond the border no sheet carries a force: Airy's function is held at 0 there, by a bed of 25 C / cell^4 at nodes
+/// Beyond a free border no sheet carries a force: Airy's function is held at 0 there, by a bed of 25 C / cell^4 at nodes
 /// that are half covered, and of 270 at bare ones. A softer bed moves the border outwards: with 1 in place of 30,
 /// gutters that are held at one end are 7 to 11 % stiffer; 100 takes 2 % off, and takes more steps. With a membrane that merely gives way a thousand times as much there they were 24 to 53 % too stiff, because the void went
 /// on curving and resisted at a long lever. The curvature is not cut out: one that ends at a border along which it
@@ -59,6 +62,64 @@ double holdOf(double held)
     return std::clamp(0.5 + kSharp * (held - 0.5), 0.0, 1.0);
 }
 
+/// Returns whether what is held surrounds a quarter and more of what is not, as far as sixteen directions tell: no
+/// finger and no part of an object that is held at one end lies between held nodes.
+bool isSurrounded(const Patch& patch)
+{
+    constexpr int    kDirections = 16;
+    constexpr double kShare      = 0.25; // [1]
+    const PlateGrid& grid        = patch.plate.grid;
+    const auto       isHeld      = [&](std::size_t n) { return patch.held.values()[n] > 0.5; };
+    const auto       along       = [&](std::size_t n, int direction) {
+        const double angle = 2 * std::numbers::pi * direction / kDirections;
+        return double(int(n) / grid.nodesZ()) * std::cos(angle) + double(int(n) % grid.nodesZ()) * std::sin(angle);
+    };
+    if (patch.held.values().empty()) return false;
+    std::array<double, kDirections> farthest{};
+    farthest.fill(-std::numeric_limits<double>::infinity());
+    for (std::size_t n = 0; n < grid.nodes(); ++n)
+        for (int d = 0; d < kDirections && isOnSheet(patch, n) && isHeld(n); ++d)
+            farthest[std::size_t(d)] = std::max(farthest[std::size_t(d)], along(n, d));
+    double inside = 0, all = 0;
+    for (std::size_t n = 0; n < grid.nodes(); ++n) {
+        if (!isOnSheet(patch, n) || isHeld(n)) continue;
+        bool within = true;
+        for (int d = 0; d < kDirections && within; ++d) within = along(n, d) <= farthest[std::size_t(d)];
+        inside += within;
+        ++all;
+    }
+    return inside >= kShare * all;
+}
+
+/// Returns of how many pieces what lies beyond free borders is.
+int freePieces(const Patch& patch)
+{
+    constexpr std::size_t    kFewest = 9; // nodes: fewer are a gap between points
+    const PlateGrid&         grid    = patch.plate.grid;
+    std::vector<bool>        left(grid.nodes());
+    std::vector<std::size_t> piece;
+    for (std::size_t n = 0; n < grid.nodes(); ++n)
+        left[n] = !isOnSheet(patch, n) && (patch.held.values().empty() || patch.held.values()[n] < 0.5);
+    int        pieces = 0;
+    const auto take   = [&](std::size_t node) {
+        if (!left[node]) return;
+        left[node] = false;
+        piece.push_back(node);
+    };
+    for (std::size_t n = 0; n < grid.nodes(); ++n) {
+        piece.clear();
+        take(n);
+        for (std::size_t k = 0; k < piece.size(); ++k) {
+            const int i = int(piece[k]) / grid.nodesZ(), j = int(piece[k]) % grid.nodesZ();
+            for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
+                for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
+                    take(std::size_t(a * grid.nodesZ() + b));
+        }
+        pieces += piece.size() >= kFewest;
+    }
+    return pieces;
+}
+
 } // namespace
 
 bool isOnSheet(const Patch& patch, std::size_t node)
@@ -80,12 +141,20 @@ void cutOutMembrane(Patch& patch)
     constexpr double kFirm = 1000; // over the sheet's stiffness: what a ring of held nodes gives way is below 1 % [1]
     const PlateGrid& grid  = patch.plate.grid;
     const double     area  = grid.spacingX * grid.spacingZ;
-    if (!patch.covered.values().empty()) patch.stressBed = NodeField(grid);
-    for (std::size_t n = 0; n < patch.covered.values().size(); ++n)
-        patch.stressBed.values()[n] = kStressBed * patch.membraneCompliance.values()[n] / (area * area) *
+    if (!patch.covered.values().empty()) {
+        patch.stressBed  = NodeField(grid);
+        patch.freePieces = freePieces(patch);
+    }
+    // What is held carries the forces of what it surrounds, like the ground behind it. Elsewhere that ground has none to
+    // carry, and the solver converges faster on a bed.
+    const bool bears = isSurrounded(patch);
+    for (std::size_t n = 0; n < patch.covered.values().size(); ++n) {
+        double&      compliance     = patch.membraneCompliance.values()[n];
+        const double held           = patch.held.values().empty() ? 0 : holdOf(patch.held.values()[n]);
+        patch.stressBed.values()[n] = (bears ? 1 - held : 1) * kStressBed * compliance / (area * area) *
                                       (1 / shareOf(patch.covered.values()[n], kLeastCovered) - 1);
-    for (std::size_t n = 0; n < patch.held.values().size(); ++n)
-        patch.membraneCompliance.values()[n] /= 1 + (kFirm - 1) * holdOf(patch.held.values()[n]);
+        compliance /= 1 + (kFirm - 1) * held;
+    }
 }
 
 void holdNodes(Patch& patch, const NodeField& held, double foundation, const NodeField& load)

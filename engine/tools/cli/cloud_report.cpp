@@ -60,11 +60,11 @@ std::string placeText(const glm::dvec3& place, double diagonal)
 
 namespace {
 
-/// Says that a scene holds an object of which nothing is held; empty else.
-std::vector<std::string> heldInVain(const Scene& scene)
+/// Says that of an object that is held only a window bends; empty else.
+std::vector<std::string> heldBeyondWindow(const Scene& scene)
 {
     if (!scene.held.isThere() || scene.patch.windowOf == WindowOf::object) return {};
-    return {"what the key held says has no effect in a patch window that is not the object's; set --window object"};
+    return {"what the key held says counts only within the patch window; set --window object for all of it"};
 }
 
 } // namespace
@@ -79,7 +79,7 @@ std::vector<std::string> assumptions(const Scene& scene, const CloudFileReport& 
         said.push_back("no stiffness in the file: uniform " + formatQuantity(kDefaultModulus, "Pa") +
                        " assumed; set --uniform or --stiffness");
     said.insert(said.end(), report.warnings.begin(), report.warnings.end());
-    for (std::string& line : heldInVain(scene)) said.push_back(std::move(line));
+    for (std::string& line : heldBeyondWindow(scene)) said.push_back(std::move(line));
     for (std::string& line : beyondComparedTissue(scene)) said.push_back(std::move(line));
     return said;
 }
