@@ -20,10 +20,10 @@ constexpr double kVoidOfPlates = 1e-4, kVoidOfShells = 3e-3;
 
 /// Beyond a free border no sheet carries a force: Airy's function is held at 0 there, by a bed of 25 C / cell^4 at nodes
 /// that are half covered, and of 270 at bare ones. A softer bed moves the border outwards: with 1 in place of 30,
-/// gutters that are held at one end are 7 to 11 % stiffer; 100 takes 2 % off, and takes more steps. With a membrane that merely gives way a thousand times as much there they were 24 to 53 % too stiff, because the void went
-/// on curving and resisted at a long lever. The curvature is not cut out: one that ends at a border along which it
-/// changes belongs to no surface, and such a sheet carries loads by stresses of its own (a gutter of 100 mm was felt
-/// five times too stiff).
+/// gutters that are held at one end are 7 to 11 % stiffer; 100 takes 2 % off, and takes more steps. With a membrane that
+/// merely gives way a thousand times as much there they were 24 to 53 % too stiff, because the void went on curving and
+/// resisted at a long lever. The curvature is not cut out: one that ends at a border along which it changes belongs to
+/// no surface, and such a sheet carries loads by stresses of its own (a gutter of 100 mm was felt five times too stiff).
 constexpr double kStressBed = 30, kLeastCovered = 0.1; // [1]
 
 double shareOf(double covered, double beyond)
