@@ -16,6 +16,7 @@
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/body_give.h"
 #include "engine/pipeline/detail/coarser_grid.h"
+#include "engine/pipeline/detail/grid_part.h"
 #include "engine/pipeline/detail/other_face.h"
 #include "engine/pipeline/detail/places_followed.h"
 #include "engine/pipeline/detail/shell_patch.h"
@@ -530,9 +531,9 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
 
 // --- 2.5, equations 6 to 8: the plate bends under a unit force
 
-void keep(Patch& patch, PlateSolution solution, double compliance)
+void keep(Patch& patch, const GridPart& part, PlateSolution solution, double compliance)
 {
-    patch.response      = std::move(solution.deflection);
+    patch.response      = part.onWhole(solution.deflection);
     patch.report        = std::move(solution.report);
     patch.compliance    = compliance;
     patch.times.prepare = patch.report.setUpMilliseconds;
@@ -542,12 +543,13 @@ void keep(Patch& patch, PlateSolution solution, double compliance)
 void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
     const StageClock  clock(patch.times.solve);
-    const Footprint   finger(unitLoad(patch, settings));
+    const GridPart    part(patch);
+    const Footprint   finger = part.of(Footprint(unitLoad(patch, settings)));
     FootprintSolution solved =
         patch.curvature
-            ? solver.solveFootprints(shellOf(patch), {&finger, 1}, 0, settings.tolerance, settings.tolerance)
-            : solver.solveFootprints(patch.plate, {&finger, 1}, 0, settings.tolerance, settings.tolerance);
-    keep(patch, std::move(solved.whole), solved.responses.front().work + bodyFelt(patch));
+            ? solver.solveFootprints(part.of(shellOf(patch)), {&finger, 1}, 0, settings.tolerance, settings.tolerance)
+            : solver.solveFootprints(part.of(patch.plate), {&finger, 1}, 0, settings.tolerance, settings.tolerance);
+    keep(patch, part, std::move(solved.whole), solved.responses.front().work + bodyFelt(patch));
 }
 
 /// Bends the plate also under each footprint of a lattice.
@@ -555,17 +557,19 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
                ComplianceTable& table)
 {
     const StageClock clock(patch.times.solve);
+    const GridPart   part(patch);
     const auto       solved = [&](const FootprintLattice& loads) {
-        return patch.curvature ? solveTable(shellOf(patch), patch.below, loads, solver, settings.tolerance, table)
-                                     : solveTable(patch.plate, patch.below, loads, solver, settings.tolerance, table);
+        return patch.curvature
+                         ? solveTable(part.of(shellOf(patch)), patch.below, loads, solver, settings.tolerance, table)
+                         : solveTable(part.of(patch.plate), patch.below, loads, solver, settings.tolerance, table);
     };
     const bool     whole  = !patch.covered.values().empty();
-    MiddleSolution middle = solved(whole ? onSheet(lattice, patch) : lattice);
+    MiddleSolution middle = solved(whole ? part.of(onSheet(lattice, patch)) : lattice);
     if (whole) fillContact(sheetRigidity(patch), lattice, table);
     addToCompliances(table, bodyFelt(patch));
     table.chart = patch.chart;
     fillStiffening(patch.stiffeningAtNodes, lattice, table);
-    keep(patch, std::move(middle.solution), middle.compliance + bodyFelt(patch));
+    keep(patch, part, std::move(middle.solution), middle.compliance + bodyFelt(patch));
 }
 
 // --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
@@ -603,8 +607,10 @@ constexpr double kShapesTolerance = 1e-3;
 LargeLaw coarseLaw(const Patch& patch, const PatchSettings& settings, const Shell& fine, double reach,
                    PlateSolver& solver)
 {
-    const Shell     shell = everySecondOf(fine);
-    const NodeField load  = unitLoad(shell.bending.grid, settings, everySecondOf(patch.covered, shell.bending.grid));
+    const GridPart  part  = GridPart(patch).everySecond();
+    const Shell     whole = everySecondOf(fine), shell = part.of(whole);
+    const NodeField load =
+        part.of(unitLoad(whole.bending.grid, settings, everySecondOf(patch.covered, whole.bending.grid)));
     const Footprint finger(load);
     const NodeField linear =
         (patch.curvature ? solver.solveFootprints(shell, {&finger, 1}, 0, kShapesTolerance, kShapesTolerance)
@@ -626,6 +632,7 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
     const StageClock clock(patch.times.solve);
     const Shell      shell = shellOf(patch);
     const double     reach = kTrusted * patch.thickness;
+    const GridPart   part(patch);
     if (settings.forceLaw != ForceLaw::series)
         patch.linearBecause = std::string("the force law ") + name(settings.forceLaw) + " does not feel the plate";
     else if (const auto why = whyUnsolvable(shell))
@@ -634,8 +641,8 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
         try {
             patch.large = quick && hasCoarseGrid(patch, settings)
                               ? coarseLaw(patch, settings, shell, reach, solver)
-                              : largeLaw(shell, unitLoad(patch, settings), patch.response, reach, solver,
-                                         std::max(settings.tolerance, kShapesTolerance));
+                              : largeLaw(part.of(shell), part.of(unitLoad(patch, settings)), part.of(patch.response),
+                                         reach, solver, std::max(settings.tolerance, kShapesTolerance));
         } catch (const Error& error) {
             patch.linearBecause = error.what();
         }
@@ -811,14 +818,15 @@ std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& 
         blurAsIfCoarser(shell, patch.coarse ? 0 : patch.spacing); // of means as of all points
     shell = everySecondOf(shell);
     if (whyUnsolvable(shell.bending)) return {};
-    const PlateGrid& grid = shell.bending.grid;
-    const Footprint  finger(unitLoad(grid, settings, everySecondOf(patch.covered, grid)));
-    const auto       of = [&](const auto& what) {
+    const GridPart   part   = GridPart(patch).everySecond();
+    const PlateGrid& grid   = shell.bending.grid;
+    const Footprint  finger = part.of(Footprint(unitLoad(grid, settings, everySecondOf(patch.covered, grid))));
+    const auto       of     = [&](const auto& what) {
         return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance, PlateSolver::kAsWorks)
             .responses.front()
             .work;
     };
-    return patch.curvature ? of(shell) : of(shell.bending);
+    return patch.curvature ? of(part.of(shell)) : of(part.of(shell.bending));
 }
 
 } // namespace

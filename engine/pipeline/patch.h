@@ -120,7 +120,8 @@ struct Patch {
     NodeField
         membraneCompliance{}, ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell or large deflections
         stressBed{};          ///< see Shell::stressBed; empty: the object does not end in the window
-    int freePieces = 0;       ///< of what lies beyond free borders of such an object, see cutOutMembrane()
+    std::vector<NodeField> thrusts{};          ///< see Shell::thrusts
+    int                    thrustsLeftOut = 0; ///< see FreePieces::leftOut
     /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
     std::optional<CurvatureField> curvature;
     std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not

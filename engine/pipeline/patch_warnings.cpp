@@ -87,16 +87,12 @@ std::string      tooDeepAsAWhole(double sag)
            "and is curved along its length may be felt a quarter too stiff";
 }
 
-/// Says that forces between several free borders are left out. Arches that rise by 2 to 14 mm between supports 80 mm apart
-/// were felt 10 to 81 % softer than shells by CalculiX, vaults and saddles by half, domes that are held on two sides by
-/// 40 %; a flat strip's depth under a load for which it is 1.2 to 2.6 times as stiff was 23 to 159 % too large.
-std::string withoutThrust(int pieces, bool isFlat)
+/// Says which forces in the sheet are left out: an arch without those between its supports is up to five times too soft.
+std::string withoutThrust(int leftOut)
 {
-    return "the free borders are in " + std::to_string(pieces) +
-           " pieces, and the forces in the sheet between them, from one support to another or past a hole, are left "
-           "out: " +
-           (isFlat ? "a flat sheet between supports hardens more than is felt here"
-                   : "what is held at several places is felt too soft, an arch up to five times");
+    return "the forces in the sheet towards " + std::to_string(leftOut) +
+           " of its supports and free borders are left out, those of supports that it surrounds on all sides and of "
+           "free borders beyond the largest 16: it may be felt too soft";
 }
 
 /// Says which window a dent asks for, and how many cells carry the fingertip in it.
@@ -143,8 +139,8 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
         result.push_back(bentFlat(patch.sphere.fit.curvature));
     if (!patch.flatBecause.empty())
         result.push_back("it bent as a flat plate, not as the shell that was asked for: " + patch.flatBecause);
-    if (!patch.curvature && patch.freePieces > 1 && settings.large == Large::on)
-        result.push_back(withoutThrust(patch.freePieces, true));
+    if (patch.thrustsLeftOut > 0 && (patch.curvature || settings.large == Large::on))
+        result.push_back(withoutThrust(patch.thrustsLeftOut));
     if (!patch.curvature) return;
     const auto [most, least] = patch.principal;
     const bool   whole       = settings.windowOf == WindowOf::object;
@@ -167,7 +163,6 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
     const double mostSag = whole && std::abs(least / most) > kBothWays ? kMostSagOfWhole : kMostSag;
-    if (patch.freePieces > 1) result.push_back(withoutThrust(patch.freePieces, false));
     if (patch.sag > mostSag + kShown)
         result.push_back(whole ? tooDeepAsAWhole(patch.sag) : tooDeep(patch.sag, least / most > kBothWays));
     if (patch.unrolled > kFolded && varies(*patch.curvature))
@@ -260,6 +255,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (patch.sideUnsure)
         result.push_back("the cloud has no other side behind this place, so the finger's side is a guess (" +
                          directionText(patch.chart.frame.normal) + "); set --from");
+    if (const NodeField& held = patch.held; !held.values().empty() && held.values()[held.values().size() / 2] > 0.5)
+        result.push_back("the object is held at this place, so that only the fingertip's contact gives way");
     addCurvature(result, patch, settings, material);
     constexpr double kElsewhere = 0.5,
                      kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5

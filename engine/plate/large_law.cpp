@@ -11,6 +11,7 @@
 #include "engine/plate/load.h"
 #include "engine/plate/report_text.h"
 #include "engine/plate/shell_energy.h"
+#include "engine/plate/thrust.h"
 
 namespace palp {
 namespace {
@@ -85,6 +86,12 @@ struct Quartic {
 
 // --- the shapes
 
+/// Adds a multiple of a field to another.
+void add(NodeField& to, double times, const NodeField& field)
+{
+    for (std::size_t n = 0; n < to.values().size(); ++n) to.values()[n] += times * field.values()[n];
+}
+
 /// Solves what belongs to a shell.
 class Solves {
 public:
@@ -92,27 +99,26 @@ public:
         : shell_(shell), membrane_(membraneOf(shell)), anchored_(membrane_), solver_(solver), tolerance_(tolerance),
           flat_(std::ranges::all_of(
               std::array{&shell.curvatureX, &shell.curvatureZ, &shell.curvatureXZ},
-              [](const NodeField* k) { return std::ranges::all_of(k->values(), [](double v) { return v == 0; }); }))
+              [](const NodeField* k) { return std::ranges::all_of(k->values(), [](double v) { return v == 0; }); })),
+          thrusts_(shell)
     {
         // A phi that no side holds may float: no load of slopes or curvature moves it. So soft a ground changes its
         // second derivatives by 1e-5 at most, because its slowest wave resists by 182 C / a^4.
         constexpr double kGround = 1e-5 * 182;
         const double     a       = std::max(shell.bending.grid.sizeX(), shell.bending.grid.sizeZ());
-        if (isStressFree(shell) && membrane_.foundation == 0)
+        if (isStressFree(shell))
             anchored_.foundation = kGround * geometricMean(shell.membraneCompliance.values()) / std::pow(a, 4);
+        if (!shell.thrusts.empty()) findThrusts();
     }
 
     [[nodiscard]] const Plate& membrane() const { return membrane_; }
     [[nodiscard]] bool         flat() const { return flat_; }
 
-    /// Returns C^-1 of loads.
+    /// Returns the phi that loads of the membrane give: C^-1 of them, and thrusts.
     [[nodiscard]] std::vector<NodeField> relax(std::span<const NodeField> loads) const
     {
-        std::vector<NodeField> fields;
-        for (PlateSolution& of : solver_.solveAll(anchored_, loads, tolerance_)) {
-            demandConverged(of.report);
-            fields.push_back(std::move(of.deflection));
-        }
+        std::vector<NodeField> fields = relaxWithoutThrust(loads);
+        for (std::size_t n = 0; n < fields.size() && !ofThrusts_.empty(); ++n) addThrusts(fields[n], loads[n]);
         return fields;
     }
 
@@ -127,17 +133,52 @@ public:
     }
 
 private:
+    [[nodiscard]] std::vector<NodeField> relaxWithoutThrust(std::span<const NodeField> loads) const
+    {
+        std::vector<NodeField> fields;
+        for (PlateSolution& of : solver_.solveAll(anchored_, loads, tolerance_)) {
+            demandConverged(of.report);
+            fields.push_back(std::move(of.deflection));
+        }
+        return fields;
+    }
+
+    /// Adds the thrusts that go with a load, which the membrane without them answers by phi.
+    void addThrusts(NodeField& phi, const NodeField& load) const
+    {
+        std::vector<double> right;
+        for (const NodeField& of : ofThrusts_) right.push_back(dot(load, of));
+        const std::vector<double> y = thrusts_.numbers(stretched_, right);
+        for (std::size_t t = 0; t < y.size(); ++t)
+            for (std::size_t n = 0; n < phi.values().size(); ++n) phi.values()[n] += y[t] * ofThrusts_[t].values()[n];
+    }
+
     static void demandConverged(const SolveReport& report)
     {
         if (!report.converged)
             throw Error("a shape of deep dents is not solved as well as asked for: " + errorText(report));
     }
 
-    const Shell& shell_;
-    Plate        membrane_, anchored_;
-    PlateSolver& solver_;
-    double       tolerance_;
-    bool         flat_;
+    /// Finds the phi of each thrust T with what the membrane answers to it, T - C^-1 C T, and minus what that is by under
+    /// the others' stresses.
+    void findThrusts()
+    {
+        std::vector<NodeField> loads;
+        for (const ShellLoad& load : thrusts_.loads()) loads.push_back(load.onPhi); // -C T
+        ofThrusts_ = relaxWithoutThrust(loads);
+        for (const NodeField& load : loads)
+            for (const NodeField& answer : ofThrusts_) stretched_.push_back(-dot(load, answer));
+        for (std::size_t t = 0; t < ofThrusts_.size(); ++t) add(ofThrusts_[t], 1, shell_.thrusts[t]);
+    }
+
+    const Shell&           shell_;
+    Plate                  membrane_, anchored_;
+    PlateSolver&           solver_;
+    double                 tolerance_;
+    bool                   flat_;
+    Thrusts                thrusts_;
+    std::vector<NodeField> ofThrusts_;
+    std::vector<double>    stretched_; ///< [1/(N m)]
 };
 
 /// The shapes w_i, the stresses f_i that curvature gives them, and the stresses g_ij of their slopes.
@@ -151,12 +192,6 @@ struct Shapes {
         return g[std::min(i, j)][std::max(i, j)];
     }
 };
-
-/// Adds a multiple of a field to another.
-void add(NodeField& to, double times, const NodeField& field)
-{
-    for (std::size_t n = 0; n < to.values().size(); ++n) to.values()[n] += times * field.values()[n];
-}
 
 /// Adds a shape, and finds the stresses of it alone and with those before.
 void addShape(Shapes& shapes, const Shell& shell, const Solves& solves, NodeField w, NodeField right)

@@ -18,11 +18,13 @@
 #include "engine/plate/detail/hard_plates.h"
 #include "engine/plate/detail/memory_shortage.h"
 #include "engine/plate/detail/rigidity_unit.h"
+#include "engine/plate/load.h"
 #include "engine/plate/multigrid/direct_plate.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/plate/multigrid/multigrid_shell_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "engine/plate/reference/reference_shell_solver.h"
+#include "engine/plate/thrust.h"
 
 namespace palp {
 namespace {
@@ -49,6 +51,49 @@ double looseFor(double tolerance)
     return std::min(kLoosest, std::sqrt(tolerance));
 }
 
+/// What the thrusts of a shell take off its answers. Each is solved for alone, in doubles: what is left of a work may be a
+/// fiftieth of it, and several loads together may stop after a step.
+class ThrustAnswers {
+public:
+    ThrustAnswers(MultigridShellSolver& solver, const Shell& shell, double tolerance) : thrusts_(shell)
+    {
+        for (const ShellLoad& load : thrusts_.loads())
+            answers_.push_back(std::move(solver.solve({&load, 1}, tolerance).front()));
+        for (const ShellLoad& load : thrusts_.loads())
+            for (const ShellAnswer& answer : answers_)
+                ofLoads_.push_back(dot(load.onW, answer.deflection) + dot(load.onPhi, answer.stressFunction));
+    }
+
+    /// Returns the share of the work that they leave [1].
+    [[nodiscard]] double shareLeft(const ShellAnswer& answer, const Footprint& load) const
+    {
+        constexpr double kLeast = 1e-3;
+        ShellAnswer      with   = answer;
+        takeOff(with, load);
+        return answer.work > 0 ? std::clamp(with.work / answer.work, kLeast, 1.0) : 1;
+    }
+
+    /// Takes them off the answer to a load.
+    void takeOff(ShellAnswer& answer, const Footprint& load) const
+    {
+        if (answers_.empty()) return;
+        std::vector<double> right;
+        for (const ShellAnswer& of : answers_) right.push_back(responseOf(load, of.deflection).work);
+        const std::vector<double> y = thrusts_.numbers(ofLoads_, right);
+        for (std::size_t t = 0; t < y.size(); ++t) {
+            answer.work -= y[t] * right[t];
+            const std::vector<double>& of = answers_[t].deflection.values();
+            for (std::size_t n = 0; n < of.size(); ++n) answer.deflection.values()[n] -= y[t] * of[n];
+            if (!answers_[t].report.converged) answer.report = answers_[t].report;
+        }
+    }
+
+private:
+    Thrusts                  thrusts_;
+    std::vector<ShellAnswer> answers_;
+    std::vector<double>      ofLoads_;
+};
+
 /// Solves for footprints on a shell by multigrid: the whole one to `drawn`, and the others so far that their works are
 /// right to the tolerance.
 FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell& shell,
@@ -58,13 +103,18 @@ FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell&
     std::vector<Footprint> others;
     for (std::size_t n = 0; n < loads.size(); ++n)
         if (n != whole) others.push_back(loads[n]);
-    const double      loose = looseFor(tolerance);
-    ShellAnswer       first = solver.solve(loads.subspan(whole, 1), std::min(drawn, loose)).front();
-    const auto        rest  = solver.solve(others, loose);
+    const double        loose = looseFor(tolerance);
+    const ThrustAnswers thrusts(solver, shell, tolerance);
+    ShellAnswer         first = solver.solve(loads.subspan(whole, 1), std::min(drawn, loose)).front();
+    // What thrust takes off a work leaves its error.
+    const double closer = loose * std::sqrt(thrusts.shareLeft(first, loads[whole]));
+    if (closer < std::min(drawn, loose)) first = std::move(solver.solve(loads.subspan(whole, 1), closer).front());
+    auto              rest = solver.solve(others, closer);
     const Shear       shear(shell);
     FootprintSolution solution;
     for (std::size_t n = 0; n < loads.size(); ++n) {
-        const ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
+        ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
+        thrusts.takeOff(of, loads[n]);
         solution.responses.push_back(responseOf(loads[n], of.deflection));
         solution.responses.back().work =
             of.work + shear.workOf(of.deflection) - squeezeWork(shell, of.deflection, loads[n]);
@@ -95,7 +145,9 @@ bool areAlike(const Shell& a, const Shell& b)
     return sameButRigidity(a.bending, b.bending) && areAlike(a.bending.rigidity, b.bending.rigidity) &&
            areAlike(a.bending.foundationShape, b.bending.foundationShape) && a.stressEdges == b.stressEdges &&
            alike(&Shell::membraneCompliance) && alike(&Shell::curvatureX) && alike(&Shell::curvatureZ) &&
-           alike(&Shell::curvatureXZ) && alike(&Shell::stressBed) && alike(&Shell::sheared);
+           alike(&Shell::curvatureXZ) && alike(&Shell::stressBed) && alike(&Shell::sheared) &&
+           std::ranges::equal(a.thrusts, b.thrusts,
+                              [](const NodeField& one, const NodeField& other) { return areAlike(one, other); });
 }
 
 /// Returns the report of all loads, or one of a load that did not converge.

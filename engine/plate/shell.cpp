@@ -146,17 +146,18 @@ Plate membraneOf(const Shell& shell)
     membrane.edges        = shell.stressEdges;
     membrane.poissonRatio = -shell.bending.poissonRatio;
     membrane.rigidity     = shell.membraneCompliance;
-    if (shell.stressBed.values().empty()) return membrane;
-    membrane.foundation      = extremesOf(shell.stressBed.values()).most;
+    const double most     = shell.stressBed.values().empty() ? 0 : extremesOf(shell.stressBed.values()).most;
+    if (!(most > 0)) return membrane;
+    membrane.foundation      = most;
     membrane.foundationShape = shell.stressBed;
-    if (membrane.foundation > 0)
-        for (double& share : membrane.foundationShape.values()) share /= membrane.foundation;
+    for (double& share : membrane.foundationShape.values()) share /= most;
     return membrane;
 }
 
 bool isStressFree(const Shell& shell) noexcept
 {
-    return shell.stressEdges == PlateEdges{Edge::free, Edge::free, Edge::free, Edge::free};
+    return shell.stressEdges == PlateEdges{Edge::free, Edge::free, Edge::free, Edge::free} &&
+           std::ranges::all_of(shell.stressBed.values(), [](double k) { return k == 0; });
 }
 
 std::optional<std::string> whyUnsolvable(const Shell& shell)
@@ -174,6 +175,11 @@ std::optional<std::string> whyUnsolvable(const Shell& shell)
         return "the bed of the stresses is on another grid than the rigidity";
     if (!std::ranges::all_of(shell.stressBed.values(), [](double k) { return k >= 0 && std::isfinite(k); }))
         return "the bed of the stresses has to be finite and at least 0 everywhere";
+    if (!shell.thrusts.empty() && !(membraneOf(shell).foundation > 0))
+        return "there are thrusts, but no bed that they leave";
+    for (const NodeField& thrust : shell.thrusts)
+        if (!thrust.on(grid) || !isFinite(thrust))
+            return "a thrust is not finite, or on another grid than the rigidity";
     if (shell.bending.poissonRatio < 0) return "a shell's Poisson's ratio has to be at least 0";
     if (isStressFree(shell)) return std::nullopt;
     if (whyUnsolvable(membraneOf(shell))) // only its edges are left as a reason

@@ -100,13 +100,13 @@ void visitStretchTerms(const Plate& membrane, Visit&& visit)
 /// Returns the forces B phi of membrane forces on a curved sheet [N]; the coupling is w . B phi.
 [[nodiscard]] NodeField couplingForces(const Shell& shell, const NodeField& phi);
 
-/// Returns the load B' w of a curved sheet's deflection on its membrane [m].
+/// Returns the load B' w of a curved sheet's deflection on its membrane [1].
 [[nodiscard]] NodeField couplingLoad(const Shell& shell, const NodeField& w);
 
 /// Returns the forces S(phi) w by which membrane forces resist slopes [N]: T = w . S(phi) w / 2.
 [[nodiscard]] NodeField stretchForces(const Plate& membrane, const NodeField& phi, const NodeField& w);
 
-/// Returns the incompatibility s(v, w) by which slopes load the membrane [m]: s(v, w) . phi =
+/// Returns the incompatibility s(v, w) by which slopes load the membrane [1]: s(v, w) . phi =
 /// v . S(phi) w.
 [[nodiscard]] NodeField stretchOf(const Plate& membrane, const NodeField& v, const NodeField& w);
 

@@ -16,7 +16,7 @@ struct CalculixPress {
     std::array<double, 10> depths; ///< [m]
 };
 
-inline constexpr std::array<CalculixPress, 7> kCalculixPresses{{
+inline constexpr std::array<CalculixPress, 9> kCalculixPresses{{
     {"sheet",
      0.001,
      0.046,
@@ -58,6 +58,16 @@ inline constexpr std::array<CalculixPress, 7> kCalculixPresses{{
      6.1e-04,
      {8.6374e-05, 0.00018409, 0.00029616, 0.00042785, 0.00058647, 0.00078116, 0.0010196, 0.0013001, 0.0016076,
       0.0019245}},
+    {"band",
+     0.0015,
+     0.025,
+     1.3e-03,
+     {0.00060964, 0.0010388, 0.0013533, 0.001605, 0.0018173, 0.0020027, 0.0021684, 0.002319, 0.0024577, 0.0025866}},
+    {"low_arch",
+     0.0015,
+     0.012,
+     2.3e-03,
+     {0.000239, 0.00055474, 0.00096776, 0.0013838, 0.0017057, 0.0019514, 0.0021494, 0.0023166, 0.0024622, 0.002592}},
 }};
 
 } // namespace palp

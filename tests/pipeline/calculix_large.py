@@ -21,6 +21,8 @@ PRESSES = [
     ("wart_under", 1e-3, 0.121),
     ("wart_beside", 1e-3, 0.07),
     ("soft_spot", 1e-3, 0.031),
+    ("band", 1.5e-3, 0.025),
+    ("low_arch", 1.5e-3, 0.012),
 ]
 INCREMENTS = 10
 

@@ -82,6 +82,16 @@ def bowl(stem, rim, bend):
     return place
 
 
+def between(length, width, along, across):
+    """A sheet from support to support, curved by `along` and `across` [1/m], > 0 where it bulges up."""
+
+    def place(x, y):
+        u, v = x * length / 2, y * width / 2
+        return u, v, -(along * u * u + across * v * v) / 2
+
+    return place
+
+
 def even(point):
     return 1.0
 
@@ -164,6 +174,12 @@ OBJECTS = [
     Shape("drum_wart", flat(120e-3), spot(10, 8e-3), 2e-3, mirrored=False, last=NEAR),
     Shape("lobe", LOBE, even, 2e-3, mirrored=False, held="first", last=NEAR),
     Shape("lobe", LOBE, even, 3e-3, mirrored=False, held="first", last=NEAR),
+    Shape("band", between(80e-3, 30e-3, 0, 0), even, 1.5e-3, held="last", last=NEAR),
+    Shape("arch", between(80e-3, 30e-3, 5, 0), even, 1.5e-3, held="last", last=NEAR),
+    Shape("low_arch", between(80e-3, 30e-3, 1.5, 0), even, 1.5e-3, held="last", last=NEAR),
+    Shape("vault", between(60e-3, 80e-3, 8, 0), even, 1.5e-3, held="last", last=NEAR),
+    Shape("saddle", between(70e-3, 50e-3, 6, -6), even, 1.5e-3, held="last", last=NEAR),
+    Shape("bridge", between(70e-3, 70e-3, 8.33, 8.33), even, 1.5e-3, held="last", last=NEAR),
     held_at_its_stem("disc", 0, 2e-3),
     held_at_its_stem("shallow_dish", 5, 2e-3),
     held_at_its_stem("dish", 10, 2e-3),

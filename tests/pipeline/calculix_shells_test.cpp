@@ -1,6 +1,7 @@
 #include "tests/pipeline/calculix_shells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -102,6 +103,24 @@ Object heldObject(std::string_view name)
             61e-3}; // 62.2 along the surface, 60 across
 }
 
+/// Sheets from support to support.
+struct Between {
+    std::string_view name;
+    double           length, width; ///< [m]
+    double           along, across; ///< curvatures [1/m]
+};
+constexpr std::array<Between, 6> kBetween{{{"band", 80e-3, 30e-3, 0, 0},
+                                           {"arch", 80e-3, 30e-3, 5, 0},
+                                           {"low_arch", 80e-3, 30e-3, 1.5, 0},
+                                           {"vault", 60e-3, 80e-3, 8, 0},
+                                           {"saddle", 70e-3, 50e-3, 6, -6},
+                                           {"bridge", 70e-3, 70e-3, 8.33, 8.33}}};
+
+bool isBetween(std::string_view name)
+{
+    return std::ranges::find(kBetween, name, &Between::name) != kBetween.end();
+}
+
 /// Objects with borders of their own, in a window that spans them.
 Object wholeObject(std::string_view name)
 {
@@ -120,6 +139,18 @@ Object wholeObject(std::string_view name)
             return p.x > -10e-3 && std::abs(p.y) < 25e-3 * std::sqrt(1 - 0.96 * share * share);
         };
         return lobe;
+    }
+    if (const auto between = std::ranges::find(kBetween, name, &Between::name); between != kBetween.end()) {
+        const auto& [_, length, width, along, across] = *between;
+        constexpr double kHeld                        = 7e-3; // beyond either end [m]
+        Object           arch{[=](double x, double y) {
+                        x *= length / 2 + kHeld;
+                        y *= width / 2;
+                        return glm::dvec3(x, y, -(along * x * x + across * y * y) / 2);
+                    },
+                    length + 2 * kHeld, width};
+        arch.held = [=](const glm::dvec3& p) { return std::abs(p.x) > length / 2; };
+        return arch;
     }
     const double bend = name == "disc" ? 0 : name == "dish" ? 10 : 5; // [1/m]
     const auto   high = [=](double r) { return bend > 0 ? (std::sqrt(1 - bend * bend * r * r) - 1) / bend : 0; };
@@ -145,7 +176,7 @@ Kind kindOf(std::string_view name)
         if (name == held) return Kind::held;
     for (const std::string_view whole : {"drum", "drum_wart", "lobe", "disc", "shallow_dish", "dish"})
         if (name == whole) return Kind::whole;
-    return Kind::curved;
+    return isBetween(name) ? Kind::whole : Kind::curved;
 }
 
 Object objectNamed(std::string_view name)
@@ -310,11 +341,22 @@ TEST(CalculixShells, AFlatSheetInItsOwnFrameIsAClampedPlate)
 TEST(CalculixShells, WhatHasBordersOfItsOwnBendsAboutWhatHoldsIt)
 {
     for (const CalculixShell& of : kCalculixShells) {
-        if (kindOf(of.name) != Kind::whole || of.name.ends_with("dish")) continue;
+        if (kindOf(of.name) != Kind::whole || of.name.ends_with("dish") || isBetween(of.name)) continue;
         const double felt = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
         // Measured: lobes -0.3 and 0.4 %, drum -1.2, its wart -2.2, disc -3.2, whose stem is nine cells wide and is
         // found to a part of one: by CalculiX a stem of 7.56 mm in place of 8 is 7 % softer.
         EXPECT_LT(std::abs(felt), 0.04) << of.name << ", " << of.thickness << " m";
+    }
+}
+
+/// Without the forces from one support to the other they were felt 10 to 81 % too soft.
+TEST(CalculixShells, WhatSpansFromSupportToSupportThrusts)
+{
+    for (const CalculixShell& of : kCalculixShells) {
+        if (!isBetween(of.name)) continue;
+        const double felt = feltBy(Theory::shell, Edge::clamped, of) / of.stiffness - 1;
+        std::printf("  %s: %+.1f %%\n", std::string(of.name).c_str(), 100 * felt);
+        EXPECT_NEAR(felt, 0, 0.03) << of.name;
     }
 }
 
@@ -351,6 +393,7 @@ TEST(CalculixPresses, AreFeltUpToOneAndAHalfThicknesses)
         const Edge       edge     = of.name == "sheet" ? Edge::clamped : Edge::supported;
         PatchSettings    settings = settingsOf(object, Theory::shell, edge);
         settings.large            = Large::on;
+        if (object.held) settings.windowOf = WindowOf::object;
         PlateSolver host("host");
         const Patch patch = deform(cloud, touchAt(cloud, object.touch, object.outward, 10e-3), settings, host);
         ASSERT_TRUE(patch.large) << of.name << patch.linearBecause;
@@ -358,12 +401,13 @@ TEST(CalculixPresses, AreFeltUpToOneAndAHalfThicknesses)
         for (std::size_t n = 0; n < of.depths.size(); ++n) {
             const double depth = of.depths[n], force = of.force * double(n + 1) / double(of.depths.size());
             if (depth > 1.55 * of.thickness) break;
-            // Measured: sheet 0.7 %, spheres -0.3 to 4.1, ellipsoid 2, spots of stiffness -3 to 4.2.
+            // Measured: sheet 0.7 %, spheres -0.3 to 4.1, ellipsoid 2, spots of stiffness -3 to 4.2, band 0.8,
+            // low arch -2.1.
             EXPECT_NEAR(forceAt(patch, depth) / force, 1, 0.05)
                 << of.name << ", " << of.thickness << " m, " << depth << " m deep";
             deepest = depth / patch.compliance / force - 1; // of the linear law
         }
-        EXPECT_GT(std::abs(deepest), 0.4) << of.name << ": then nothing is shown";
+        EXPECT_GT(std::abs(deepest), 0.35) << of.name << ": then nothing is shown";
     }
 }
 

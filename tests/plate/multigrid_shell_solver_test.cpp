@@ -13,6 +13,7 @@
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "tests/plate/shells.h"
+#include "tests/plate/strips.h"
 
 namespace palp {
 namespace {
@@ -65,9 +66,11 @@ TEST(MultigridShellSolver, IsTheReferenceAtAFreeBorderOfTheObject)
 
 TEST(MultigridShellSolver, IsTheReferenceWhereTheShellEndsWithinTheWindow)
 {
-    for (const int cells : {32, 64}) {
-        const Shell         shell = cutAslant(shellOf(square(cells), wart(10), constant(1, 0.5, 0.3), 8));
-        const NodeField     load  = fingertip(square(cells), 3e-3, -2e-3);
+    for (const auto& [cells, bending, stress] :
+         {std::tuple{32, Edge::supported, Edge::supported}, std::tuple{64, Edge::supported, Edge::supported},
+          std::tuple{64, Edge::clamped, Edge::free}}) { // of which no side holds phi
+        const Shell     shell = cutAslant(shellOf(square(cells), wart(10), constant(1, 0.5, 0.3), 8, bending, stress));
+        const NodeField load  = fingertip(square(cells), 3e-3, -2e-3);
         const ShellSolution exact = ReferenceShellSolver(shell).solve(load);
         const ShellAnswer   found = solved(shell, load);
         EXPECT_TRUE(found.report.converged) << cells << " cells";
@@ -95,6 +98,24 @@ TEST(MultigridShellSolver, OfNoCurvatureIsThePlate)
     EXPECT_LT(
         largestDifference(solved(shell, load).deflection, ReferencePlateSolver(shell.bending).solve(load).deflection),
         5e-6);
+}
+
+TEST(MultigridShellSolver, SolvesForLoadsOnBothFields)
+{
+    const Shell     shell = stripOf(shellOf(square(32), wart(10), constant(1, 0.2, 0.3), 8, Edge::clamped));
+    const NodeField load  = fingertip(square(32), 3e-3, -2e-3);
+    const Thrusts   thrusts(shell);
+    Shell           loose = shell; // what loads of thrusts act on
+    loose.thrusts.clear();
+    MultigridShellSolver solver(loose);
+    const ShellAnswer    pressed = solver.solve({&load, 1}, 1e-7).front();
+    for (const ShellLoad& of : thrusts.loads()) { // of two answers each does the same work on the other's load
+        const ShellAnswer answer = solver.solve({&of, 1}, 1e-7).front();
+        EXPECT_TRUE(answer.report.converged);
+        const double there = dot(load, answer.deflection);
+        const double here  = dot(of.onW, pressed.deflection) + dot(of.onPhi, pressed.stressFunction);
+        EXPECT_NEAR(there / here, 1, 1e-5) << "floats of the levels";
+    }
 }
 
 /// Returns how many steps the compliance takes to be right to a share.

@@ -5,11 +5,13 @@
 #include <numbers>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/plate/load.h"
 #include "engine/plate/reference/reference_plate_solver.h"
+#include "tests/plate/strips.h"
 #include "tests/support/terminal.h"
 
 namespace palp {
@@ -208,6 +210,38 @@ TEST(ReferenceShellSolver, WhereItsStressesAreHeldItEndsAsAtItsOwnBorder)
     EXPECT_LT(std::abs(errors[1]), 0.7 * std::abs(errors[0])) << errors[0] << " " << errors[1];
     EXPECT_LT(std::abs(errors[2]), 0.7 * std::abs(errors[1])) << errors[1] << " " << errors[2];
     EXPECT_NEAR(errors[2], std::pow(64.0 / 65, 5) - 1, 0.01);
+}
+
+/// A strip of width b, clamped at both ends and pressed by P across its middle, nu = 0: a beam of length L on which the
+/// thrust N b acts as a pressure k N. The beam gives way by P L^3 / (192 D b) in the middle, by the pressure p by p L^4 /
+/// (384 D) there and p L^5 / (720 D) in all, and N shortens it by as much as k times all of that.
+TEST(ReferenceShellSolver, AnArchThrusts)
+{
+    constexpr double    kArch = 20; // [1/m]
+    std::vector<double> errors;
+    for (const int cells : {32, 64, 128}) {
+        Shell own                = homogeneous(cells, kSize, {kArch, 0, 0});
+        own.bending.poissonRatio = 0;
+        own.bending.edges        = {Edge::clamped, Edge::clamped, Edge::free, Edge::free};
+        const Shell strip        = stripOf(own, 1e-6);
+        const int   nodes        = cells / 2 + 1;
+        NodeField   load(strip.bending.grid);
+        for (int j = cells / 4; j <= cells - cells / 4; ++j) load(cells / 2, j) = 1.0 / nodes;
+        const double L = kSize, D = kRigidity, width = kSize / 2;
+        const double thrust =
+            kArch * std::pow(L, 4) / (384 * D * width) / (kCompliance * L + kArch * kArch * std::pow(L, 5) / (720 * D));
+        const double beam = std::pow(L, 3) / (192 * D * width);
+        const double arch = beam - thrust * kArch * std::pow(L, 4) / (384 * D);
+        EXPECT_LT(arch, 0.3 * beam) << "then thrust is hardly seen";
+        errors.push_back(compliance(strip, load) / arch - 1);
+        Shell loose = strip;
+        loose.thrusts.clear();
+        EXPECT_GT(compliance(loose, load), 2 * arch);
+    }
+    // The strip is a node wider than half the window: of the first order.
+    EXPECT_LT(std::abs(errors[1]), 0.7 * std::abs(errors[0])) << errors[0] << " " << errors[1];
+    EXPECT_LT(std::abs(errors[2]), 0.7 * std::abs(errors[1])) << errors[1] << " " << errors[2];
+    EXPECT_LT(std::abs(errors[2]), 0.03);
 }
 
 TEST(ReferenceShellSolver, IsThePlateWithoutCurvature)

@@ -50,6 +50,7 @@ Shell everySecondOf(const Shell& fine)
          {&shell.bending.rigidity, &shell.bending.foundationShape, &shell.membraneCompliance, &shell.curvatureX,
           &shell.curvatureZ, &shell.curvatureXZ, &shell.stressBed, &shell.sheared})
         *field = everySecondOf(*field, coarse);
+    for (NodeField& thrust : shell.thrusts) thrust = everySecondOf(thrust, coarse);
     return shell;
 }
 

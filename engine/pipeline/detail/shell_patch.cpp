@@ -198,6 +198,7 @@ Shell shellOf(const Patch& patch)
             curvature(&CurvatureField::z),
             curvature(&CurvatureField::xz),
             patch.stressBed,
+            patch.thrusts,
             patch.sheared};
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/chart/coverage.h"
 #include "engine/core/extremes.h"
+#include "engine/pipeline/detail/thrust_fields.h"
 
 namespace palp {
 namespace {
@@ -91,35 +92,6 @@ bool isSurrounded(const Patch& patch)
     return inside >= kShare * all;
 }
 
-/// Returns of how many pieces what lies beyond free borders is.
-int freePieces(const Patch& patch)
-{
-    constexpr std::size_t    kFewest = 9; // nodes: fewer are a gap between points
-    const PlateGrid&         grid    = patch.plate.grid;
-    std::vector<bool>        left(grid.nodes());
-    std::vector<std::size_t> piece;
-    for (std::size_t n = 0; n < grid.nodes(); ++n)
-        left[n] = !isOnSheet(patch, n) && (patch.held.values().empty() || patch.held.values()[n] < 0.5);
-    int        pieces = 0;
-    const auto take   = [&](std::size_t node) {
-        if (!left[node]) return;
-        left[node] = false;
-        piece.push_back(node);
-    };
-    for (std::size_t n = 0; n < grid.nodes(); ++n) {
-        piece.clear();
-        take(n);
-        for (std::size_t k = 0; k < piece.size(); ++k) {
-            const int i = int(piece[k]) / grid.nodesZ(), j = int(piece[k]) % grid.nodesZ();
-            for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
-                for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
-                    take(std::size_t(a * grid.nodesZ() + b));
-        }
-        pieces += piece.size() >= kFewest;
-    }
-    return pieces;
-}
-
 } // namespace
 
 bool isOnSheet(const Patch& patch, std::size_t node)
@@ -138,16 +110,15 @@ void cutOut(Patch& patch, double spacing, Theory theory)
 
 void cutOutMembrane(Patch& patch)
 {
-    constexpr double kFirm = 1000; // over the sheet's stiffness: what a ring of held nodes gives way is below 1 % [1]
-    const PlateGrid& grid  = patch.plate.grid;
-    const double     area  = grid.spacingX * grid.spacingZ;
-    if (!patch.covered.values().empty()) {
-        patch.stressBed  = NodeField(grid);
-        patch.freePieces = freePieces(patch);
-    }
-    // What is held carries the forces of what it surrounds, like the ground behind it. Elsewhere that ground has none to
-    // carry, and the solver converges faster on a bed.
-    const bool bears = isSurrounded(patch);
+    constexpr double kFirm  = 1000; // over the sheet's stiffness: what a ring of held nodes gives way is below 1 % [1]
+    const PlateGrid& grid   = patch.plate.grid;
+    const double     area   = grid.spacingX * grid.spacingZ;
+    const FreePieces pieces = freePieces(patch);
+    patch.thrustsLeftOut    = pieces.leftOut;
+    if (!patch.covered.values().empty()) patch.stressBed = NodeField(grid);
+    // What is held carries the forces of what it surrounds, and those from one support to another, like the ground behind
+    // it. Elsewhere that ground has none to carry, and the solver converges faster on a bed.
+    const bool bears = isSurrounded(patch) || pieces.count > 1;
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n) {
         double&      compliance     = patch.membraneCompliance.values()[n];
         const double held           = patch.held.values().empty() ? 0 : holdOf(patch.held.values()[n]);
@@ -155,6 +126,7 @@ void cutOutMembrane(Patch& patch)
                                       (1 / shareOf(patch.covered.values()[n], kLeastCovered) - 1);
         compliance /= 1 + (kFirm - 1) * held;
     }
+    patch.thrusts = thrustFields(patch, pieces);
 }
 
 void holdNodes(Patch& patch, const NodeField& held, double foundation, const NodeField& load)

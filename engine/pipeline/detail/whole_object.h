@@ -15,11 +15,10 @@ namespace palp {
 void cutOut(Patch& patch, double spacing, Theory theory);
 
 /// Does the same with the membrane, which carries no force beyond the border (patch.stressBed), and where nodes are held
-/// hardly stretches: what surrounds a shell then stays where it is in its plane. Fills in patch.freePieces too.
+/// hardly stretches: what surrounds a shell then stays where it is in its plane. Fills in patch.thrusts too.
 ///
-/// Airy's function is held at 0 at all free borders. Where these are in several pieces it may be another linear function
-/// at each, by the forces that the sheet carries between them, from one support to another or past a hole; these are
-/// left out.
+/// Airy's function is held at 0 at a free border. Where these are in several pieces it is another linear function at each,
+/// by the forces that the sheet carries between them, from one support to another or past a hole.
 /// \pre its compliance is that of the sheet, also beyond its border
 void cutOutMembrane(Patch& patch);
 

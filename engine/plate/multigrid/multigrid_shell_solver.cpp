@@ -66,7 +66,7 @@ struct MultigridShellSolver::Impl {
 
     /// Solves for these loads at once, by vectors that have been made for as many or more.
     template <class Fields>
-    void solve(Fields& fields, std::span<const Footprint> loads, const Wanted& wanted,
+    void solve(Fields& fields, std::span<const PlacedLoad> loads, const Wanted& wanted,
                std::vector<ShellAnswer>& answers)
     {
         const auto began = std::chrono::steady_clock::now();
@@ -97,7 +97,7 @@ struct MultigridShellSolver::Impl {
     }
 
     /// \return how many of the loads it has solved for
-    std::size_t solveByHost(std::span<const Footprint> left, const Wanted& wanted, std::vector<ShellAnswer>& answers)
+    std::size_t solveByHost(std::span<const PlacedLoad> left, const Wanted& wanted, std::vector<ShellAnswer>& answers)
     {
         constexpr std::size_t kFewest = 3; // from that many on eight at a time take less time
         if (left.size() < kFewest) {
@@ -112,7 +112,7 @@ struct MultigridShellSolver::Impl {
     }
 
     /// The same on a processor of Vulkan, of as many loads together as fit a share of its memory.
-    std::size_t solveByProcessor(std::span<const Footprint> left, const Wanted& wanted,
+    std::size_t solveByProcessor(std::span<const PlacedLoad> left, const Wanted& wanted,
                                  std::vector<ShellAnswer>& answers)
     {
         constexpr std::size_t     kMostBytes = std::size_t(256) << 20;
@@ -128,15 +128,23 @@ struct MultigridShellSolver::Impl {
         return count;
     }
 
-    [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const Footprint> loads, const Wanted& wanted)
+    [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const PlacedLoad> loads, const Wanted& wanted)
     {
         PALP_EXPECT(wanted.tolerance > 0 && wanted.mostSteps > 0, "a tolerance and a number of steps above 0");
-        for (const Footprint& load : loads)
-            PALP_EXPECT(load.parts.empty() || load.parts.back().node < grid.nodes(), "a load on another grid");
         std::vector<ShellAnswer> answers;
         for (auto left = loads; !left.empty();)
             left = left.subspan(context ? solveByProcessor(left, wanted, answers) : solveByHost(left, wanted, answers));
         return answers;
+    }
+
+    [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const Footprint> loads, const Wanted& wanted)
+    {
+        std::vector<PlacedLoad> parts;
+        for (const Footprint& load : loads) {
+            PALP_EXPECT(load.parts.empty() || load.parts.back().node < grid.nodes(), "a load on another grid");
+            parts.push_back(placed(levels.front(), load));
+        }
+        return solve(parts, wanted);
     }
 
     [[nodiscard]] SolveReport reportOf(const Gradients& state, double wall) const
@@ -185,6 +193,16 @@ std::vector<ShellAnswer> MultigridShellSolver::solve(std::span<const NodeField> 
         loads.emplace_back(forces);
     }
     return impl_->solve(loads, {tolerance, mostSteps, true});
+}
+
+std::vector<ShellAnswer> MultigridShellSolver::solve(std::span<const ShellLoad> loads, double tolerance, int mostSteps)
+{
+    std::vector<PlacedLoad> parts;
+    for (const ShellLoad& load : loads) {
+        PALP_EXPECT(load.onW.on(impl_->grid) && load.onPhi.on(impl_->grid), "a load on another grid");
+        parts.push_back(placed(impl_->levels.front(), load, impl_->phiUnit));
+    }
+    return impl_->solve(parts, {tolerance, mostSteps, true});
 }
 
 std::vector<ShellAnswer> MultigridShellSolver::solve(std::span<const Footprint> loads, double tolerance, int mostSteps)

@@ -7,6 +7,7 @@
 #include "engine/plate/footprint.h"
 #include "engine/plate/plate.h"
 #include "engine/plate/shell.h"
+#include "engine/plate/thrust.h"
 
 namespace palp {
 
@@ -87,6 +88,10 @@ public:
     /// \param tolerance  of the report's estimate, relative [1]; works are right to its square
     /// \param mostSteps  after which an answer is returned that has not converged
     [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const NodeField> nodalForces, double tolerance,
+                                                 int mostSteps = kMostSteps);
+
+    /// Does the same for loads on both fields.
+    [[nodiscard]] std::vector<ShellAnswer> solve(std::span<const ShellLoad> loads, double tolerance,
                                                  int mostSteps = kMostSteps);
 
     /// Does the same for loads on few nodes, without their stress functions.

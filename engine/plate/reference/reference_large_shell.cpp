@@ -46,6 +46,15 @@ void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Plate& mem
         couple(term.slope, of.ofW, term.force, of.ofPhi, half * of.phiUnit * valueOf(term.across, w));
         couple(term.across, of.ofW, term.force, of.ofPhi, half * of.phiUnit * valueOf(term.slope, w));
     });
+    for (std::size_t t = 0; t < of.thrusts.size(); ++t) {
+        const NodeField forces = stretchForces(membrane, of.thrusts[t], w);
+        const int       column = of.firstThrust + int(t);
+        for (std::size_t n = 0; n < of.ofW.size(); ++n) {
+            if (of.ofW[n] == kHeldUnknown) continue;
+            entries.push_back({{of.ofW[n], column}, of.phiUnit * forces.values()[n]});
+            entries.push_back({{column, of.ofW[n]}, of.phiUnit * forces.values()[n]});
+        }
+    }
 }
 
 /// Returns the gradient of T at a state, in the unknowns.
@@ -56,6 +65,8 @@ Eigen::VectorXd gradientOfStretch(const ShellUnknowns& of, const Plate& membrane
     const NodeField load     = stretchOf(membrane, w, w);
     for (std::size_t n = 0; n < of.ofPhi.size(); ++n)
         if (of.ofPhi[n] != kHeldUnknown) gradient[of.ofPhi[n]] = of.phiUnit * load.values()[n] / 2;
+    for (std::size_t t = 0; t < of.thrusts.size(); ++t)
+        gradient[of.firstThrust + int(t)] = of.phiUnit * dot(load, of.thrusts[t]) / 2;
     return gradient;
 }
 

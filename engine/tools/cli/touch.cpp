@@ -132,8 +132,8 @@ void printShell(const nlohmann::json& shell, double compliance)
         std::printf("; the answer is that of the scene's: %s\n", shell["edges"].get<std::string>().c_str());
     }
     if (const double body = shell["body_compliance"]; body > 0)
-        std::printf("  body               gives way by %s of the compliance, held by the rim of a cap, or just below "
-                    "its widest\n",
+        std::printf("  body               gives way by %s of the compliance: a cap is held by its rim, what is closed "
+                    "just below its widest\n",
                     percent(body / compliance).c_str());
 }
 

@@ -10,6 +10,7 @@
 #include "engine/plate/plate_solver.h"
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "tests/plate/shells.h"
+#include "tests/plate/strips.h"
 #include "tests/support/shader_fixture.h"
 
 // The shaders of shells against the host's kernels, to the bit where the processor rounds as C++ does, and against the
@@ -84,6 +85,23 @@ TEST_F(ShellOnProcessor, HasTheBitsOfTheHostWhereTheShellEndsWithinTheWindow)
     const Shell     shell = cutAslant(shellOf(grid, wart(10), constant(1, 0.5, 0.3), 8));
     const NodeField load  = fingertip(grid, 3e-3, -2e-3);
     expectTheHosts(solved(shell, {&load, 1}), shell, {&load, 1}, "cut aslant");
+}
+
+TEST_F(ShellOnProcessor, HasTheBitsOfTheHostUnderLoadsOnBothFields)
+{
+    const Shell          shell = stripOf(shellOf(square(32), wart(10), constant(1, 0.2, 0.3), 8, Edge::clamped));
+    const Thrusts        thrusts(shell);
+    MultigridShellSolver host(shell), own(shell, *context_, *kernels_);
+    for (const ShellLoad& load : thrusts.loads()) {
+        const ShellAnswer here = host.solve({&load, 1}, 1e-6).front(), there = own.solve({&load, 1}, 1e-6).front();
+        EXPECT_TRUE(there.report.converged);
+        if (context_->bitExact()) {
+            EXPECT_EQ(there.work, here.work);
+            EXPECT_EQ(there.stressFunction.values(), here.stressFunction.values());
+        } else {
+            EXPECT_LT(largestDifference(there.deflection, here.deflection), 1e-5);
+        }
+    }
 }
 
 TEST_F(ShellOnProcessor, SolvesForSeveralLoadsTogether)

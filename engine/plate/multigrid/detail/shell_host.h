@@ -120,14 +120,11 @@ public:
     {
     }
 
-    /// Takes the loads' forces [of any unit], of unknowns alone.
-    void setRight(std::span<const Footprint> forces)
+    void setRight(std::span<const PlacedLoad> loads)
     {
         std::ranges::fill(b_, Real(0));
-        for (std::size_t n = 0; n < forces.size(); ++n)
-            eachUnknownPart(finest_, forces[n], [&](std::ptrdiff_t place, double force) {
-                b_[std::size_t(place * kLoads<kTogether>) + n] = Real(force);
-            });
+        for (std::size_t n = 0; n < loads.size(); ++n)
+            for (const auto& [place, force] : loads[n]) b_[std::size_t(place * kLoads<kTogether>) + n] = Real(force);
     }
     [[nodiscard]] double answer(std::size_t load, std::ptrdiff_t place) const
     {

@@ -132,6 +132,29 @@ double ShellLevel::exactAt(int plane, int i, int j) const noexcept
     return exact[std::size_t((row * 2 + j % 2) * layout.span + j / 2)];
 }
 
+PlacedLoad placed(const ShellLevel& level, const Footprint& load)
+{
+    const int  nodesZ = level.layout.cellsZ + 1;
+    PlacedLoad parts;
+    for (const Footprint::Part& part : load.parts) {
+        const int i = int(part.node) / nodesZ, j = int(part.node) % nodesZ;
+        if (level.exactAt(kInverseW, i, j) != 0) parts.push_back({placeIn(level.layout, i, j, 0), part.force});
+    }
+    return parts;
+}
+
+PlacedLoad placed(const ShellLevel& level, const ShellLoad& load, double phiUnit)
+{
+    const ShellLayout& l = level.layout;
+    PlacedLoad         parts;
+    for (int i = 0; i <= l.cellsX; ++i)
+        for (int j = 0; j <= l.cellsZ; ++j) {
+            if (level.exactAt(kInverseW, i, j) != 0) parts.push_back({placeIn(l, i, j, 0), load.onW(i, j)});
+            if (level.exactAt(kInverseF, i, j) != 0) parts.push_back({placeIn(l, i, j, 1), phiUnit * load.onPhi(i, j)});
+        }
+    return parts;
+}
+
 void makeLevels(const Shell& shell, const HostKernels& kernels, std::vector<ShellLevel>& levels)
 {
     const double        rigidity   = geometricMean(shell.bending.rigidity.values());
@@ -175,7 +198,7 @@ void ShellCoarseSolver::factorise(const ShellLevel& level, const HostKernels& ke
 void ShellCoarseSolver::number(const ShellLevel& level)
 {
     const ShellLayout& l    = level.layout;
-    const bool         free = level.stress.free == (kSideX0 | kSideX1 | kSideZ0 | kSideZ1);
+    const bool         free = level.stress.free == (kSideX0 | kSideX1 | kSideZ0 | kSideZ1) && level.stress.bed == 0;
     const auto pinned       = [&](int i, int j) { // a stress function that no side holds is known but for a linear one
         return free && (i == 0 || i == l.cellsX) && (j == 0 || j == l.cellsZ) && !(i > 0 && j > 0);
     };

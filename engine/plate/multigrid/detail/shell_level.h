@@ -9,6 +9,7 @@
 #include "engine/plate/host/shell_view.h"
 #include "engine/plate/multigrid/detail/grid_hierarchy.h"
 #include "engine/plate/shell.h"
+#include "engine/plate/thrust.h"
 
 namespace palp {
 
@@ -31,16 +32,18 @@ struct ShellLevel {
     [[nodiscard]] double exactAt(int plane, int i, int j) const noexcept;
 };
 
-/// Calls visit(place of w, force [N]) for the nodes of a load whose deflection is unknown.
-template <class Visit>
-void eachUnknownPart(const ShellLevel& level, const Footprint& load, const Visit& visit)
-{
-    const int nodesZ = level.layout.cellsZ + 1;
-    for (const Footprint::Part& part : load.parts) {
-        const int i = int(part.node) / nodesZ, j = int(part.node) % nodesZ;
-        if (level.exactAt(kInverseW, i, j) != 0) visit(placeIn(level.layout, i, j, 0), part.force);
-    }
-}
+/// A part of a load on an unknown.
+struct PlacedForce {
+    std::ptrdiff_t place; ///< in a field
+    double         force; ///< of any unit
+};
+using PlacedLoad = std::vector<PlacedForce>;
+
+/// Returns the parts of a load on unknown nodes.
+[[nodiscard]] PlacedLoad placed(const ShellLevel& level, const Footprint& load);
+/// Returns the parts of a load on both fields.
+/// \param phiUnit  phi over its unknown [N]
+[[nodiscard]] PlacedLoad placed(const ShellLevel& level, const ShellLoad& load, double phiUnit);
 
 /// Makes all levels of a shell, the finest first, in the memory of those of another one. Rigidity and compliance are
 /// coarsened by geometric means, which makes one the inverse of the other on each level if it is on the finest;

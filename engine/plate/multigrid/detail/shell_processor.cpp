@@ -324,19 +324,19 @@ void ProcessorShellFields::goAlong(CommandList& list) const
     dots(list, k.dotsOfCycle, left_, levels_.front().x, kRz);
 }
 
-void ProcessorShellFields::setRight(std::span<const Footprint> forces)
+void ProcessorShellFields::setRight(std::span<const PlacedLoad> loads)
 {
-    PALP_EXPECT(forces.size() <= loads_, "more loads than the memory is for");
+    PALP_EXPECT(loads.size() <= loads_, "more loads than the memory is for");
     std::memset(givenRight_.mapped(), 0, givenRight_.bytes());
     std::memset(givenFloats_.mapped(), 0, givenFloats_.bytes());
     const auto doubles = givenRight_.as<double>();
     const auto floats  = givenFloats_.as<float>();
-    for (std::size_t n = 0; n < forces.size(); ++n)
-        eachUnknownPart(source_.front(), forces[n], [&](std::ptrdiff_t place, double force) {
+    for (std::size_t n = 0; n < loads.size(); ++n)
+        for (const auto& [place, force] : loads[n]) {
             const std::size_t at = n * numbers() + std::size_t(place);
             doubles[at]          = force;
             floats[at]           = float(force);
-        });
+        }
 }
 
 ProcessorShellFields::PerLoad ProcessorShellFields::takeStart()

@@ -43,7 +43,7 @@ public:
     void setLevels(const ShellCoarseSolver& coarse);
 
     /// As those of HostShellFields.
-    void                  setRight(std::span<const Footprint> forces);
+    void                  setRight(std::span<const PlacedLoad> loads);
     [[nodiscard]] PerLoad none() const { return PerLoad(loads_, 0.0); }
     PerLoad               takeStart();
     PerLoad               precondition() { return sums(kRz); } // go() has made it

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "engine/plate/shell_energy.h"
+#include "engine/plate/thrust.h"
 
 namespace palp {
 namespace {
@@ -64,9 +65,30 @@ void addCoupling(ShellEntries& entries, const Shell& shell, const Plate& membran
     });
 }
 
+/// Adds the rows and columns of the thrusts.
+void addThrusts(ShellEntries& entries, const Shell& shell, const ShellUnknowns& of)
+{
+    const Thrusts thrusts(shell);
+    const auto    add = [&](int row, int column, double part) {
+        if (row == kHeldUnknown) return;
+        entries.push_back({{row, column}, part});
+        if (row != column) entries.push_back({{column, row}, part});
+    };
+    for (std::size_t t = 0; t < thrusts.loads().size(); ++t) {
+        const int        column = of.firstThrust + int(t);
+        const ShellLoad& load   = thrusts.loads()[t];
+        for (std::size_t n = 0; n < of.ofW.size(); ++n) {
+            add(of.ofW[n], column, of.phiUnit * load.onW.values()[n]);
+            add(of.ofPhi[n], column, of.phiUnit * of.phiUnit * load.onPhi.values()[n]);
+        }
+        for (std::size_t other = 0; other <= t; ++other)
+            add(of.firstThrust + int(other), column, -of.phiUnit * of.phiUnit * thrusts.own(other, t));
+    }
+}
+
 } // namespace
 
-ShellUnknowns::ShellUnknowns(const Shell& shell) : grid(shell.bending.grid)
+ShellUnknowns::ShellUnknowns(const Shell& shell) : grid(shell.bending.grid), thrusts(shell.thrusts)
 {
     if (const auto why = whyUnsolvable(shell)) throw Error("the shell cannot be solved: " + *why);
     if (grid.nodes() > kMostFactorisedNodes)
@@ -75,12 +97,23 @@ ShellUnknowns::ShellUnknowns(const Shell& shell) : grid(shell.bending.grid)
     const Plate membrane = membraneOf(shell);
     ofW                  = numbered(shell.bending, 0, false);
     ofPhi                = numbered(membrane, 1 + *std::ranges::max_element(ofW), isStressFree(shell));
-    count                = 1 + *std::ranges::max_element(ofPhi);
+    firstThrust          = 1 + *std::ranges::max_element(ofPhi);
+    count                = firstThrust + int(thrusts.size());
     phiUnit              = std::sqrt(geometricMean(shell.bending.rigidity) / geometricMean(shell.membraneCompliance));
 
     addEnergy(entries, shell.bending, ofW, 1);
     addEnergy(entries, membrane, ofPhi, -phiUnit * phiUnit);
     addCoupling(entries, shell, membrane, ofW, ofPhi, phiUnit);
+    addThrusts(entries, shell, *this);
+}
+
+NodeField ShellUnknowns::stressFunction(std::span<const double> x) const
+{
+    NodeField phi = spread(x, ofPhi, phiUnit);
+    for (std::size_t t = 0; t < thrusts.size(); ++t)
+        for (std::size_t n = 0; n < phi.values().size(); ++n)
+            phi.values()[n] += phiUnit * x[std::size_t(firstThrust) + t] * thrusts[t].values()[n];
+    return phi;
 }
 
 NodeField ShellUnknowns::spread(std::span<const double> x, const std::vector<int>& numberOf, double unit) const

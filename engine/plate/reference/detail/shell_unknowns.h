@@ -24,19 +24,21 @@ using ShellEntries = std::vector<ShellEntry>;
 
 /// The unknowns of both fields of a shell, w first, and the second derivative of its energy in them.
 struct ShellUnknowns {
-    PlateGrid        grid;
-    std::vector<int> ofW, ofPhi; ///< number of each node's unknown, or kHeldUnknown
-    int              count   = 0;
-    double           phiUnit = 1; ///< phi over the unknown [N]: makes both fields metres and both operators alike
-    ShellEntries     entries;     ///< of the matrix, both halves
+    PlateGrid              grid;
+    std::vector<int>       ofW, ofPhi;      ///< number of each node's unknown, or kHeldUnknown
+    int                    firstThrust = 0; ///< number of the unknown of the first of the thrusts, which come last
+    int                    count       = 0;
+    double                 phiUnit = 1; ///< phi over the unknown [N]: makes both fields metres and both operators alike
+    std::vector<NodeField> thrusts;     ///< [1]
+    ShellEntries           entries;     ///< of the matrix, both halves
 
-    /// 	hrows Error naming what is wrong, if whyUnsolvable(shell), or beyond kMostFactorisedNodes
+    /// \throws Error naming what is wrong, if whyUnsolvable(shell), or beyond kMostFactorisedNodes
     explicit ShellUnknowns(const Shell& shell);
 
     /// Returns a field of unknowns; 0 where the nodes are held.
     [[nodiscard]] NodeField spread(std::span<const double> x, const std::vector<int>& numberOf, double unit) const;
     [[nodiscard]] NodeField deflection(std::span<const double> x) const { return spread(x, ofW, 1); }
-    [[nodiscard]] NodeField stressFunction(std::span<const double> x) const { return spread(x, ofPhi, phiUnit); }
+    [[nodiscard]] NodeField stressFunction(std::span<const double> x) const; ///< with the thrusts
 
     /// Returns the right side of forces at the nodes [N].
     [[nodiscard]] std::vector<double> rightSide(const NodeField& nodalForce) const;

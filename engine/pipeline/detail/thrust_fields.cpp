@@ -1,0 +1,166 @@
+#include "engine/pipeline/detail/thrust_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "engine/pipeline/detail/whole_object.h"
+
+namespace palp {
+namespace {
+
+constexpr double kFar = std::numeric_limits<double>::infinity();
+
+using Nodes = std::vector<std::size_t>;
+
+/// Returns the pieces of some nodes of a grid that hang together, at corners too.
+template <class Which>
+std::vector<Nodes> connected(const PlateGrid& grid, const Which& isOne)
+{
+    std::vector<Nodes> pieces;
+    std::vector<bool>  left(grid.nodes());
+    for (std::size_t n = 0; n < left.size(); ++n) left[n] = isOne(n);
+    const auto take = [&](std::size_t node, Nodes& piece) {
+        if (left[node]) piece.push_back(node);
+        left[node] = false;
+    };
+    for (std::size_t n = 0; n < left.size(); ++n) {
+        Nodes piece;
+        take(n, piece);
+        for (std::size_t k = 0; k < piece.size(); ++k) {
+            const int i = int(piece[k]) / grid.nodesZ(), j = int(piece[k]) % grid.nodesZ();
+            for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
+                for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
+                    take(std::size_t(a * grid.nodesZ() + b), piece);
+        }
+        if (!piece.empty()) pieces.push_back(std::move(piece));
+    }
+    return pieces;
+}
+
+bool isHeld(const Patch& patch, std::size_t node)
+{
+    return !patch.held.values().empty() && patch.held.values()[node] >= 0.5;
+}
+
+/// Returns how many supports the sheet surrounds, where it has others too.
+int postsWithin(const Patch& patch)
+{
+    const PlateGrid&         grid = patch.plate.grid;
+    const std::vector<Nodes> supports =
+        connected(grid, [&](std::size_t n) { return isOnSheet(patch, n) && isHeld(patch, n); });
+    const auto reachesOut = [&](std::size_t node) {
+        const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
+            for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
+                if (!isOnSheet(patch, std::size_t(a * grid.nodesZ() + b))) return true;
+        return false;
+    };
+    if (supports.size() < 2) return 0;
+    return int(std::ranges::count_if(supports,
+                                     [&](const Nodes& support) { return std::ranges::none_of(support, reachesOut); }));
+}
+
+/// Returns the square of the distance of each node from the nearest one of a piece [m^2]; infinite if it has none.
+NodeField squaredDistances(const PlateGrid& grid, const std::vector<int>& pieceOf, int piece)
+{
+    const auto at = [&](int i, int j) { return std::size_t(i) * std::size_t(grid.nodesZ()) + std::size_t(j); };
+    NodeField  along(grid, kFar), squares(grid); // along z first
+    for (int i = 0; i <= grid.cellsX; ++i) {
+        const auto sweep = [&](int first, int end, int step) {
+            double away = kFar;
+            for (int j = first; j != end; j += step) {
+                away        = pieceOf[at(i, j)] == piece ? 0 : away + grid.spacingZ;
+                along(i, j) = std::min(along(i, j), away);
+            }
+        };
+        sweep(0, grid.nodesZ(), 1);
+        sweep(grid.cellsZ, -1, -1);
+    }
+    for (int i = 0; i <= grid.cellsX; ++i)
+        for (int j = 0; j <= grid.cellsZ; ++j) {
+            double least = kFar;
+            for (int away = 0; away <= grid.cellsX; ++away) {
+                const double x2 = away * grid.spacingX * away * grid.spacingX;
+                if (x2 >= least) break;
+                for (const int k : {i - away, i + away})
+                    if (k >= 0 && k <= grid.cellsX) least = std::min(least, x2 + along(k, j) * along(k, j));
+            }
+            squares(i, j) = least;
+        }
+    return squares;
+}
+
+/// Returns the square of the distance from each piece [m^2].
+std::vector<NodeField> distancesFrom(const PlateGrid& grid, const std::vector<int>& pieceOf, int pieces)
+{
+    std::vector<NodeField> squares;
+    for (int p = 0; p < pieces; ++p) squares.push_back(squaredDistances(grid, pieceOf, p));
+    return squares;
+}
+
+/// Returns the pieces whose bed holds the nodes, or kNone.
+std::vector<int> piecesOfBed(const Patch& patch, const FreePieces& pieces)
+{
+    const std::vector<NodeField> squares = distancesFrom(patch.plate.grid, pieces.of, pieces.count);
+    std::vector<int>             of(pieces.of.size(), FreePieces::kNone);
+    for (std::size_t n = 0; n < of.size(); ++n)
+        if (patch.stressBed.values()[n] > 0)
+            of[n] = int(std::ranges::min_element(squares, {}, [&](const NodeField& s) { return s.values()[n]; }) -
+                        squares.begin());
+    return of;
+}
+
+/// Returns the share of a piece in a node [1].
+double shareOf(const std::vector<NodeField>& squares, std::size_t piece, std::size_t node)
+{
+    const double own = squares[piece].values()[node];
+    if (own == 0) return 1;
+    double sum = 0;
+    for (const NodeField& of : squares) sum += own / of.values()[node]; // infinite at another piece
+    return 1 / sum;
+}
+
+} // namespace
+
+FreePieces freePieces(const Patch& patch)
+{
+    constexpr std::size_t kFewest = 9;  // nodes: fewer are a gap between points
+    constexpr std::size_t kMost   = 16; // pieces: each takes three solutions
+    FreePieces            pieces{std::vector<int>(patch.plate.grid.nodes(), FreePieces::kNone)};
+    if (patch.covered.values().empty()) return pieces;
+    std::vector<Nodes> found =
+        connected(patch.plate.grid, [&](std::size_t n) { return !isOnSheet(patch, n) && !isHeld(patch, n); });
+    std::erase_if(found, [](const Nodes& piece) { return piece.size() < kFewest; });
+    std::ranges::stable_sort(found, std::ranges::greater(), &Nodes::size);
+    pieces.count   = int(std::min(found.size(), kMost));
+    pieces.leftOut = int(found.size()) - pieces.count;
+    for (std::size_t p = 0; p < found.size(); ++p)
+        for (const std::size_t node : found[p]) pieces.of[node] = p < kMost ? int(p) : 0;
+    pieces.leftOut += postsWithin(patch);
+    return pieces;
+}
+
+std::vector<NodeField> thrustFields(const Patch& patch, const FreePieces& pieces)
+{
+    if (pieces.count < 2) return {};
+    const PlateGrid&             grid    = patch.plate.grid;
+    const std::vector<NodeField> squares = distancesFrom(grid, piecesOfBed(patch, pieces), pieces.count);
+    std::vector<NodeField>       fields;
+    for (std::size_t p = 1; p < squares.size(); ++p) {
+        NodeField one(grid), x(grid), z(grid);
+        for (int i = 0; i <= grid.cellsX; ++i)
+            for (int j = 0; j <= grid.cellsZ; ++j) {
+                one(i, j) = shareOf(squares, p, std::size_t(i) * std::size_t(grid.nodesZ()) + std::size_t(j));
+                x(i, j)   = one(i, j) * (4.0 * i / grid.cellsX - 2);
+                z(i, j)   = one(i, j) * (4.0 * j / grid.cellsZ - 2);
+            }
+        for (NodeField* field : {&one, &x, &z}) fields.push_back(std::move(*field));
+    }
+    return fields;
+}
+
+} // namespace palp

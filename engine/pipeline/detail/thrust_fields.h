@@ -1,0 +1,26 @@
+#pragma once
+#include <vector>
+
+#include "engine/core/grid.h"
+#include "engine/pipeline/patch.h"
+
+namespace palp {
+
+/// The pieces of what lies beyond the free borders of an object that the window spans, parted by what is held.
+struct FreePieces {
+    static constexpr int kNone = -1;
+
+    std::vector<int> of; ///< piece of each node; kNone: it lies on the sheet, is held, or in a gap between points
+    int              count   = 0;
+    int              leftOut = 0; ///< smaller pieces, which count as the first, and supports that the sheet surrounds
+};
+
+/// Finds them, the largest first.
+[[nodiscard]] FreePieces freePieces(const Patch& patch);
+
+/// Returns the fields by which Airy's function is another linear function at each piece, three for each but the first:
+/// 1, x and z there, 0 at the others, and smooth between them, by inverse squares of the distances.
+/// \pre the patch has its bed of stresses
+[[nodiscard]] std::vector<NodeField> thrustFields(const Patch& patch, const FreePieces& pieces);
+
+} // namespace palp
