@@ -50,21 +50,27 @@ std::vector<Sighting> sightingsOf(const SurfaceSheet& sheet, std::span<const std
     return seen;
 }
 
-/// Returns the coefficients, from weighted points; empty if the points do not determine them.
-std::optional<Vector6> quadricOf(std::span<const Sighting> seen, std::span<const double> weights)
+struct Quadric {
+    Vector6 of;       ///< coefficients
+    double  sure = 0; ///< see LocalCurvature [1]
+};
+
+/// Returns the quadric of weighted points; empty if they do not determine one.
+std::optional<Quadric> quadricOf(std::span<const Sighting> seen, std::span<const double> weights)
 {
-    constexpr double kDetermined = 1e-4; // least over largest pivot [1]: a full disc has 0.02, half a one 0.002
-    Matrix6          normal      = Matrix6::Zero();
-    Vector6          right       = Vector6::Zero();
+    constexpr double kDetermined = 1e-4, kFull = 0.02; // least over largest pivot [1]: of a full disc; half has 0.002
+    Matrix6          normal = Matrix6::Zero();
+    Vector6          right  = Vector6::Zero();
     for (std::size_t n = 0; n < seen.size(); ++n) {
         const double weight = seen[n].share * weights[n];
         normal.noalias() += (weight * seen[n].row) * seen[n].row.transpose();
         right += weight * seen[n].height * seen[n].row;
     }
     const Eigen::LDLT<Matrix6> factors(normal);
-    const Vector6              pivots = factors.vectorD();
-    if (!(pivots.minCoeff() > kDetermined * pivots.maxCoeff())) return {};
-    return factors.solve(right);
+    const Vector6              pivots     = factors.vectorD();
+    const double               determined = pivots.minCoeff() / pivots.maxCoeff();
+    if (!(determined > kDetermined)) return {};
+    return Quadric{factors.solve(right), std::min(1.0, determined / kFull)};
 }
 
 double medianOf(std::vector<double>& values)
@@ -76,14 +82,14 @@ double medianOf(std::vector<double>& values)
 
 /// Fits twice more, with less weight for points that lie far from the fit.
 /// \source Beaton & Tukey 1974, the biweight, with 4.7 standard deviations
-std::optional<Vector6> robustQuadricOf(std::span<const Sighting> seen)
+std::optional<Quadric> robustQuadricOf(std::span<const Sighting> seen)
 {
     constexpr double    kFar = 4.7, kNormal = 1.48, kExact = 1e-12; // [1]; [1]; [radii]
     constexpr int       kReweights = 2;
     std::vector<double> weights(seen.size(), 1.0), apart(seen.size());
     auto                fit = quadricOf(seen, weights);
     for (int turn = 0; fit && turn < kReweights; ++turn) {
-        for (std::size_t n = 0; n < seen.size(); ++n) apart[n] = std::abs(seen[n].height - seen[n].row.dot(*fit));
+        for (std::size_t n = 0; n < seen.size(); ++n) apart[n] = std::abs(seen[n].height - seen[n].row.dot(fit->of));
         std::vector<double> sorted = apart;
         const double        far    = kFar * kNormal * medianOf(sorted);
         if (far < kExact) break;
@@ -102,14 +108,16 @@ glm::dmat3 product(const glm::dvec3& a, const glm::dvec3& b)
 }
 
 /// Returns the second fundamental form of a fit whose slopes are small.
-LocalCurvature curvatureOf(const Vector6& fit, const Frame& axes, double radius)
+LocalCurvature curvatureOf(const Quadric& quadric, const Frame& axes, double radius)
 {
+    const Vector6&   fit   = quadric.of;
     const double     slope = std::sqrt(1 + fit[1] * fit[1] + fit[2] * fit[2]);
     const glm::dvec3 e = axes.east, n = axes.north;
     LocalCurvature   result;
     result.normal = glm::normalize(axes.normal - fit[1] * e - fit[2] * n);
     result.tensor = (fit[3] * product(e, e) + fit[4] * (product(e, n) + product(n, e)) + fit[5] * product(n, n)) *
                     (-1 / (radius * slope));
+    result.sure = quadric.sure;
     return result;
 }
 
@@ -196,17 +204,73 @@ std::optional<ChartTensor> regressionAt(const ChartPoint& place, std::span<const
 
 using Lattice = std::vector<ChartTensor>; ///< row by row along z
 
+/// What is left of the tensors of sites whose fits are noisy.
+struct Quietened {
+    ChartTensor mean{}, kept{}; ///< of the sites, and without those principal curvatures that noise may have made
+    double      varying = 1;    ///< share that is kept of what a tensor differs from the mean by [1]
+
+    [[nodiscard]] ChartTensor operator()(const ChartTensor& t) const noexcept
+    {
+        return {kept.x + varying * (t.x - mean.x), kept.z + varying * (t.z - mean.z),
+                kept.xz + varying * (t.xz - mean.xz)};
+    }
+};
+
+/// Returns the tensor without the principal curvatures that are below 1.5 times an error, and less of those below 3 times.
+ChartTensor withoutNoise(const ChartTensor& t, double error)
+{
+    const double mean = (t.x + t.z) / 2, half = (t.x - t.z) / 2, apart = std::hypot(half, t.xz);
+    const auto   kept = [&](double k) {
+        const double sure = std::clamp(std::abs(k) / (1.5 * error) - 1, 0.0, 1.0);
+        return k * sure * sure * (3 - 2 * sure);
+    };
+    const double larger = kept(mean + apart), smaller = kept(mean - apart);
+    if (!(apart > 0)) return {larger, larger, 0};
+    const double m = (larger + smaller) / 2, share = (larger - smaller) / 2 / apart;
+    return {m + share * half, m - share * half, share * t.xz};
+}
+
+/// Takes noise off tensors. A panel that is held along one side bends without stretching: a second curvature that noise
+/// made, or one that differs from place to place, makes it several times as stiff. So where the tensors of the sites
+/// scatter by no more than noise explains, their mean is taken, and what varies more is kept in that measure.
+/// \param error  that noise makes of a fit, the root of its mean square [1/m]
+Quietened quietened(std::span<const Sited> sites, double error)
+{
+    constexpr double     kSitesOfAFit = 5; // that share their points [1]
+    constexpr double     kBorders     = 2; // scatter of fits of all places over that of full discs, squares [1]
+    constexpr std::array parts{&ChartTensor::x, &ChartTensor::z, &ChartTensor::xz};
+    Quietened            result;
+    if (!(error > 0)) return result;
+    double sum = 0, squares = 0;
+    for (const Sited& site : sites) {
+        sum += site.share;
+        for (double ChartTensor::*part : parts) result.mean.*part += site.share * site.tensor.*part;
+    }
+    for (double ChartTensor::*part : parts) result.mean.*part /= sum;
+    for (const Sited& site : sites) {
+        const double x = site.tensor.x - result.mean.x, z = site.tensor.z - result.mean.z;
+        const double xz = site.tensor.xz - result.mean.xz;
+        squares += site.share / sum * (x * x + z * z + 2 * xz * xz);
+    }
+    const double fits = std::max(1.0, double(sites.size()) / kSitesOfAFit);
+    result.varying    = squares > 0 ? std::max(0.0, 1 - kBorders * error * error / squares) : 0;
+    result.kept       = withoutNoise(result.mean, error / std::sqrt(fits));
+    return result;
+}
+
 constexpr double kAround =
     1.0; ///< radius of the regression over that of the fits [1]: some ten sites, three of a survey
 
 /// Finds the curvature by the fits of one rung on a lattice over the window; empty without any.
+/// \param error  that noise makes of a fit [1/m]; 0: it is left
 Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const CurvatureSites& sitesOf, int rung,
-                  FitsFor what)
+                  FitsFor what, double error)
 {
     std::vector<Sited> sites;
-    for (const CurvatureSite& site : sitesOf(rung, what))
-        sites.push_back({site.place, inChart(site.here, frame), site.share});
+    for (const CurvatureSite& site : sitesOf(rung, what)) // errors of fits go as 1 / sure
+        sites.push_back({site.place, inChart(site.here, frame), site.share * site.here.sure * site.here.sure});
     if (sites.empty()) return {};
+    const Quietened    quiet  = quietened(sites, error);
     const double       radius = kAround * rungRadius(rung);
     Lattice            lattice;
     std::vector<Sited> beside; // of a row
@@ -218,7 +282,7 @@ Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const
         for (int j = 0; j < side; ++j) {
             const ChartPoint place{x, window.corner.z + window.grid.sizeZ() * j / (side - 1)};
             const auto       found = regressionAt(place, beside, radius);
-            lattice.push_back(found ? *found : nearestTo(place, sites));
+            lattice.push_back(quiet(found ? *found : nearestTo(place, sites)));
         }
     }
     return lattice;
@@ -228,12 +292,16 @@ constexpr double kRung = 1e-3, kRungs = 1.3; ///< the first radius [m]; their ra
 
 /// Finds the curvature with fits of a radius, between those of two rungs; empty where there are none.
 Lattice latticeBetween(const PatchWindow& window, int side, const Frame& frame, const CurvatureSites& sites,
-                       double radius)
+                       double radius, const CurvatureSettings& settings)
 {
-    const double  rung    = rungOf(radius);
-    const int     below   = int(std::floor(rung));
-    Lattice       lattice = latticeOf(window, side, frame, sites, below, FitsFor::field);
-    const Lattice wider   = latticeOf(window, side, frame, sites, below + 1, FitsFor::field);
+    const double rung  = rungOf(radius);
+    const int    below = int(std::floor(rung));
+    const auto   of    = [&](int on) {
+        const double error = kFitNoiseError * settings.noise * settings.spacing / std::pow(rungRadius(on), 3);
+        return latticeOf(window, side, frame, sites, on, FitsFor::field, error);
+    };
+    Lattice       lattice = of(below);
+    const Lattice wider   = of(below + 1);
     if (lattice.empty() || wider.empty()) return wider;
     for (std::size_t n = 0; n < lattice.size(); ++n)
         for (double ChartTensor::*part : {&ChartTensor::x, &ChartTensor::z, &ChartTensor::xz})
@@ -261,13 +329,15 @@ Bend bendOf(const Lattice& lattice, double noise)
 std::optional<double> radiusFor(const PatchWindow& window, const Frame& frame, const CurvatureSites& sites,
                                 const CurvatureSettings& settings)
 {
-    const double  least  = kLeastSpacings * settings.spacing;
-    const double  most   = std::max(least, settings.mostRadius);
-    const double  cube   = kFitNoiseError * settings.noise * settings.spacing;
-    const double  coarse = std::max(least, kSurveyShare * std::max(window.grid.sizeX(), window.grid.sizeZ()));
-    const double  radius = std::clamp(std::cbrt(cube / kSurveyError), coarse, std::max(coarse, most));
-    const int     rung   = int(std::lround(rungOf(radius)));
-    const Lattice survey = latticeOf(window, kSurvey, frame, sites, rung, FitsFor::survey);
+    const double least  = kLeastSpacings * settings.spacing;
+    const double most   = std::max(least, settings.mostRadius);
+    const double cube   = kFitNoiseError * settings.noise * settings.spacing;
+    const double coarse = std::max(least, kSurveyShare * std::max(window.grid.sizeX(), window.grid.sizeZ()));
+    const double radius = std::clamp(std::cbrt(cube / kSurveyError), coarse, std::max(coarse, most));
+    int          rung   = int(std::lround(rungOf(radius)));
+    const auto   fits   = [&](int of) { return latticeOf(window, kSurvey, frame, sites, of, FitsFor::survey, 0); };
+    Lattice      survey = fits(rung);
+    while (survey.empty() && rungRadius(rung - 2) > least) survey = fits(rung -= 2); // of a narrow object
     if (survey.empty()) return {};
     const Bend   bend      = bendOf(survey, cube / std::pow(rungRadius(rung), 3));
     const double felt      = settings.lengthRoot / std::sqrt(bend.typical);
@@ -378,7 +448,7 @@ std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Fr
     // Of what is hardly curved fits would be as wide as may be, and wider than a narrow object, which then decides
     // nothing.
     for (double radius = *wanted;; radius /= 2) {
-        const Lattice lattice = latticeBetween(window, kLattice, frame, sites, radius);
+        const Lattice lattice = latticeBetween(window, kLattice, frame, sites, radius, settings);
         if (lattice.empty() && radius > kLeastSpacings * settings.spacing) continue;
         if (lattice.empty()) return {};
         CurvatureField field = interpolated(window, lattice);

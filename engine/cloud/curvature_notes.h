@@ -16,6 +16,7 @@ namespace palp {
 struct LocalCurvature {
     glm::dvec3 normal{};  ///< [1] unit, towards the finger
     glm::dmat3 tensor{0}; ///< [1/m] in the world's axes, symmetric, nothing along the normal; > 0 bulges to the finger
+    double     sure = 1;  ///< how well the points determine it: 1 all around, about a tenth at a border [1]
 };
 
 /// What is known of an object's curvature from touches so far. It depends on the points alone, not on where they were

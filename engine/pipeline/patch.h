@@ -92,7 +92,7 @@ struct PatchSettings {
 /// it spans. One of a dent is as dentWindow() says; that
 /// takes milliseconds, so settle once before many touches. One of the object is twice as wide as the object is long, so
 /// that it holds all of it about any contact; its cells are as wide as `window` and `cells` say, but no finer than a
-/// fourth of the fingertip; there are 256 to 512, and of shells 256; and its sides, in the void, are free. A second
+/// fourth of the fingertip; there are 256 to 512, 256 of them or `cells` at least; and its sides, in the void, are free. A second
 /// time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
@@ -120,8 +120,9 @@ struct Patch {
     NodeField
         membraneCompliance{}, ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell or large deflections
         stressBed{};          ///< see Shell::stressBed; empty: the object does not end in the window
-    std::vector<NodeField> thrusts{};          ///< see Shell::thrusts
-    int                    thrustsLeftOut = 0; ///< see FreePieces::leftOut
+    std::vector<NodeField> thrusts{};              ///< see Shell::thrusts
+    int                    thrustsLeftOut = 0;     ///< see FreePieces::leftOut
+    bool                   spans          = false; ///< it is held in several places, or by what surrounds it
     /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
     std::optional<CurvatureField> curvature;
     std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not

@@ -57,8 +57,11 @@ class ThrustAnswers {
 public:
     ThrustAnswers(MultigridShellSolver& solver, const Shell& shell, double tolerance) : thrusts_(shell)
     {
-        for (const ShellLoad& load : thrusts_.loads())
+        for (const ShellLoad& load : thrusts_.loads()) {
             answers_.push_back(std::move(solver.solve({&load, 1}, tolerance).front()));
+            if (!answers_.back().report.converged) failed_ = answers_.back().report;
+            if (failed_) return;
+        }
         for (const ShellLoad& load : thrusts_.loads())
             for (const ShellAnswer& answer : answers_)
                 ofLoads_.push_back(dot(load.onW, answer.deflection) + dot(load.onPhi, answer.stressFunction));
@@ -76,7 +79,8 @@ public:
     /// Takes them off the answer to a load.
     void takeOff(ShellAnswer& answer, const Footprint& load) const
     {
-        if (answers_.empty()) return;
+        if (failed_) answer.report = *failed_;
+        if (failed_ || answers_.empty()) return;
         std::vector<double> right;
         for (const ShellAnswer& of : answers_) right.push_back(responseOf(load, of.deflection).work);
         const std::vector<double> y = thrusts_.numbers(ofLoads_, right);
@@ -84,14 +88,14 @@ public:
             answer.work -= y[t] * right[t];
             const std::vector<double>& of = answers_[t].deflection.values();
             for (std::size_t n = 0; n < of.size(); ++n) answer.deflection.values()[n] -= y[t] * of[n];
-            if (!answers_[t].report.converged) answer.report = answers_[t].report;
         }
     }
 
 private:
-    Thrusts                  thrusts_;
-    std::vector<ShellAnswer> answers_;
-    std::vector<double>      ofLoads_;
+    Thrusts                    thrusts_;
+    std::vector<ShellAnswer>   answers_;
+    std::vector<double>        ofLoads_;
+    std::optional<SolveReport> failed_; ///< of a thrust that was not solved: then no answer is one
 };
 
 /// Solves for footprints on a shell by multigrid: the whole one to `drawn`, and the others so far that their works are

@@ -9,6 +9,7 @@ namespace palp {
 
 Thrusts::Thrusts(const Shell& shell)
 {
+    if (shell.thrusts.empty()) return;
     Plate membrane      = membraneOf(shell);
     membrane.foundation = 0; // the bed, which holds psi alone, as sides do
     membrane.edges      = {Edge::free, Edge::free, Edge::free, Edge::free};

@@ -187,7 +187,7 @@ std::vector<CurvatureSite> curvatureSites(const SoftObject& object, const LaidPo
     for (const std::size_t k : sites) {
         auto fit = level.fits.at(points.ranks[k]);
         if (!fit) continue;
-        if (glm::dot(fit->normal, points.normals[k]) < 0) fit = LocalCurvature{-fit->normal, -fit->tensor};
+        if (glm::dot(fit->normal, points.normals[k]) < 0) fit = LocalCurvature{-fit->normal, -fit->tensor, fit->sure};
         result.push_back({points.positions[k], *fit, double(level.share.at(points.ranks[k]))});
     }
     return result;

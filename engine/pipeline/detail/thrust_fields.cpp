@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -46,22 +45,19 @@ bool isHeld(const Patch& patch, std::size_t node)
     return !patch.held.values().empty() && patch.held.values()[node] >= 0.5;
 }
 
-/// Returns how many supports the sheet surrounds, where it has others too.
+/// Returns how many supports the sheet surrounds, with the bare holes in them, beside another support: forces go round such
+/// a one by an Airy's function that is another one after each turn.
 int postsWithin(const Patch& patch)
 {
-    const PlateGrid&         grid = patch.plate.grid;
-    const std::vector<Nodes> supports =
-        connected(grid, [&](std::size_t n) { return isOnSheet(patch, n) && isHeld(patch, n); });
-    const auto reachesOut = [&](std::size_t node) {
+    const PlateGrid&         grid     = patch.plate.grid;
+    const std::vector<Nodes> supports = connected(grid, [&](std::size_t n) { return isHeld(patch, n); });
+    const auto               isAtSide = [&](std::size_t node) {
         const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
-        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
-            for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
-                if (!isOnSheet(patch, std::size_t(a * grid.nodesZ() + b))) return true;
-        return false;
+        return i == 0 || j == 0 || i == grid.cellsX || j == grid.cellsZ;
     };
-    if (supports.size() < 2) return 0;
-    return int(std::ranges::count_if(supports,
-                                     [&](const Nodes& support) { return std::ranges::none_of(support, reachesOut); }));
+    const auto isOut = [&](const Nodes& support) { return std::ranges::any_of(support, isAtSide); };
+    const auto out   = int(std::ranges::count_if(supports, isOut));
+    return std::max(0, int(supports.size()) - std::max(out, 1));
 }
 
 /// Returns the square of the distance of each node from the nearest one of a piece [m^2]; infinite if it has none.
@@ -126,6 +122,27 @@ double shareOf(const std::vector<NodeField>& squares, std::size_t piece, std::si
 
 } // namespace
 
+namespace {
+
+/// Puts the largest piece first, and the others in the order of their distance from the touch.
+void sortByNearness(std::vector<Nodes>& pieces, const PlateGrid& grid)
+{
+    if (pieces.empty()) return;
+    std::iter_swap(pieces.begin(), std::ranges::max_element(pieces, {}, &Nodes::size));
+    const auto away = [&](const Nodes& piece) {
+        double least = kFar;
+        for (const std::size_t node : piece) {
+            const double x = (int(node) / grid.nodesZ() - grid.cellsX / 2) * grid.spacingX;
+            const double z = (int(node) % grid.nodesZ() - grid.cellsZ / 2) * grid.spacingZ;
+            least          = std::min(least, x * x + z * z);
+        }
+        return least;
+    };
+    std::ranges::stable_sort(pieces.begin() + 1, pieces.end(), {}, away);
+}
+
+} // namespace
+
 FreePieces freePieces(const Patch& patch)
 {
     constexpr std::size_t kFewest = 9;  // nodes: fewer are a gap between points
@@ -135,7 +152,7 @@ FreePieces freePieces(const Patch& patch)
     std::vector<Nodes> found =
         connected(patch.plate.grid, [&](std::size_t n) { return !isOnSheet(patch, n) && !isHeld(patch, n); });
     std::erase_if(found, [](const Nodes& piece) { return piece.size() < kFewest; });
-    std::ranges::stable_sort(found, std::ranges::greater(), &Nodes::size);
+    sortByNearness(found, patch.plate.grid);
     pieces.count   = int(std::min(found.size(), kMost));
     pieces.leftOut = int(found.size()) - pieces.count;
     for (std::size_t p = 0; p < found.size(); ++p)

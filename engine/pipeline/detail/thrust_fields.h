@@ -11,15 +11,16 @@ struct FreePieces {
     static constexpr int kNone = -1;
 
     std::vector<int> of; ///< piece of each node; kNone: it lies on the sheet, is held, or in a gap between points
-    int              count   = 0;
-    int              leftOut = 0; ///< smaller pieces, which count as the first, and supports that the sheet surrounds
+    int              count = 0;
+    int leftOut = 0; ///< pieces farther away, which count as the first, and supports that the sheet surrounds
 };
 
-/// Finds them, the largest first.
+/// Finds them, the largest first, and the others as they are near the touch.
 [[nodiscard]] FreePieces freePieces(const Patch& patch);
 
 /// Returns the fields by which Airy's function is another linear function at each piece, three for each but the first:
-/// 1, x and z there, 0 at the others, and smooth between them, by inverse squares of the distances.
+/// 1, and the places along x and z over a quarter of the window, from its middle; 0 at the others, and smooth between
+/// them, by inverse squares of the distances.
 /// \pre the patch has its bed of stresses
 [[nodiscard]] std::vector<NodeField> thrustFields(const Patch& patch, const FreePieces& pieces);
 

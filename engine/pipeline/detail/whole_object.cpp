@@ -118,7 +118,7 @@ void cutOutMembrane(Patch& patch)
     if (!patch.covered.values().empty()) patch.stressBed = NodeField(grid);
     // What is held carries the forces of what it surrounds, and those from one support to another, like the ground behind
     // it. Elsewhere that ground has none to carry, and the solver converges faster on a bed.
-    const bool bears = isSurrounded(patch) || pieces.count > 1;
+    const bool bears = patch.spans = isSurrounded(patch) || pieces.count > 1;
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n) {
         double&      compliance     = patch.membraneCompliance.values()[n];
         const double held           = patch.held.values().empty() ? 0 : holdOf(patch.held.values()[n]);
