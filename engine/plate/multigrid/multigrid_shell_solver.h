@@ -99,7 +99,7 @@ public:
                                                  int mostSteps = kMostSteps);
 
 private:
-    static constexpr int kMostSteps = 60;
+    static constexpr int kMostSteps = 200;
 
     struct Impl;
     std::unique_ptr<Impl> impl_;
