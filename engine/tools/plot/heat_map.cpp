@@ -243,8 +243,9 @@ std::string heatMapSvg(const NodeField& field, const HeatMapSettings& settings)
         drawExtremes(svg, frame, settings, facts, values, legend);
     if (facts.undrawable > 0)
         addSwatch(legend,
-                  std::to_string(facts.undrawable) +
-                      (settings.scale == Scale::linear ? " not finite" : " not finite or not positive"),
+                  !settings.undrawn.empty()         ? settings.undrawn
+                  : settings.scale == Scale::linear ? std::to_string(facts.undrawable) + " not finite"
+                                                    : std::to_string(facts.undrawable) + " not finite or not positive",
                   {}, true);
 
     const double barLeft = frame.corner.x + frame.size.x + 24;

@@ -110,6 +110,9 @@ TEST(HeatMap, ValuesThatCannotBeDrawnAreHatchedAndCounted)
 
     EXPECT_TRUE(hasText(linear, "1 not finite"));
     EXPECT_TRUE(hasText(logarithmic, "2 not finite or not positive"));
+    settings.undrawn = "beyond the border";
+    EXPECT_TRUE(hasText(heatMapSvg(field, settings), "beyond the border"));
+    EXPECT_FALSE(hasText(heatMapSvg(field, settings), "2 not finite or not positive"));
     const Image image = embeddedImage(logarithmic);
     const int   cell  = image.width / 4;
     std::size_t grey  = 0;
