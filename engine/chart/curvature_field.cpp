@@ -216,7 +216,8 @@ struct Quietened {
     }
 };
 
-/// Returns the tensor without the principal curvatures that are below 1.5 times an error, and less of those below 3 times.
+/// Returns the tensor without the principal curvatures that are below 1.5 times an error, and less of those below 3
+/// times.
 ChartTensor withoutNoise(const ChartTensor& t, double error)
 {
     const double mean = (t.x + t.z) / 2, half = (t.x - t.z) / 2, apart = std::hypot(half, t.xz);

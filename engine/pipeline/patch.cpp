@@ -64,6 +64,18 @@ double mostResponse(const Patch& patch)
     return most;
 }
 
+bool isOnSheet(const Patch& patch, std::size_t node)
+{
+    return patch.covered.values().empty() || patch.covered.values()[node] > 0.5;
+}
+
+NodeField sheetRigidity(const Patch& patch)
+{
+    NodeField sheet = patch.plate.rigidity;
+    for (std::size_t n = 0; n < patch.covered.values().size(); ++n) sheet.values()[n] = sheetRigidity(patch, n);
+    return sheet;
+}
+
 double rigidityAtContact(const Patch& patch)
 {
     const PlateGrid& grid = patch.plate.grid;

@@ -89,11 +89,10 @@ struct PatchSettings {
 };
 
 /// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what
-/// it spans. One of a dent is as dentWindow() says; that
-/// takes milliseconds, so settle once before many touches. One of the object is twice as wide as the object is long, so
-/// that it holds all of it about any contact; its cells are as wide as `window` and `cells` say, but no finer than a
-/// fourth of the fingertip; there are 256 to 512, 256 of them or `cells` at least; and its sides, in the void, are free. A second
-/// time changes nothing.
+/// it spans. One of a dent is as dentWindow() says; that takes milliseconds, so settle once before many touches. One
+/// of the object is twice as wide as the object is long, so that it holds all of it about any contact; its cells are
+/// as wide as `window` and `cells` say, but no finer than a fourth of the fingertip; there are 256 to 512, 256 of them
+/// or `cells` at least; and its sides, in the void, are free. A second time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.
@@ -173,6 +172,12 @@ struct Patch {
     /// Returns the unit vector along which a force presses: into the surface.
     [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -chart.frame.normal; }
 };
+
+/// Returns whether a node lies on the sheet, not beyond a border of an object that the window spans.
+[[nodiscard]] bool isOnSheet(const Patch& patch, std::size_t node);
+
+/// Returns the rigidity of the sheet at the nodes [N m], also beyond a border, where the plate has next to none.
+[[nodiscard]] NodeField sheetRigidity(const Patch& patch);
 
 /// Returns the sheet's flexural rigidity at the contact [N m].
 [[nodiscard]] double rigidityAtContact(const Patch& patch);

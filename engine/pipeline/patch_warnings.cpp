@@ -76,9 +76,9 @@ std::string tooDeep(double sag, bool bulges)
                   "support range");
 }
 
-/// Says that an object that bends as a whole is deep. Cups of 100 x 40 mm that are held at one end and sag 13 and 7 % of
-/// their length are felt 24 and 9 % stiffer than shells by CalculiX; gutters, dishes, and domes that are held all round,
-/// within 5 %, which sag up to 28 %.
+/// Says that an object that bends as a whole is deep. Cups of 100 x 40 mm that are held at one end and sag 13 and 7 %
+/// of their length are felt 24 and 9 % stiffer than shells by CalculiX; gutters, dishes, and domes that are held all
+/// round, within 5 %, which sag up to 28 %.
 constexpr double kMostSagOfWhole = 0.1; // of what is curved both ways and held at one place [1]
 std::string      tooDeepAsAWhole(double sag)
 {
@@ -87,8 +87,8 @@ std::string      tooDeepAsAWhole(double sag)
            "and is curved along its length may be felt a quarter too stiff";
 }
 
-/// Says which forces in the sheet are left out. Domes on a rim and a post, or on bolts around holes, were felt 2 to 25 %
-/// softer than by CalculiX, domes with twenty holes by 33 and 45 %.
+/// Says which forces in the sheet are left out. Domes on a rim and a post, or on bolts around holes, were felt 2 to 25
+/// % softer than by CalculiX, domes with twenty holes by 33 and 45 %.
 std::string withoutThrust(int leftOut)
 {
     return "the forces in the sheet towards " + std::to_string(leftOut) +
@@ -110,8 +110,8 @@ std::string widerWindow(double width, const PatchSettings& settings)
                                      : "");
 }
 
-/// Returns whether a surface is curved otherwise from place to place: where it is not, as on a tube or a saddle, it lies
-/// off a sphere and has no folds.
+/// Returns whether a surface is curved otherwise from place to place: where it is not, as on a tube or a saddle, it
+/// lies off a sphere and has no folds.
 bool varies(const CurvatureField& field)
 {
     constexpr double kHalf = 0.5; // of the mean curvature's size, in the root of the mean square [1]

@@ -149,8 +149,7 @@ private:
         std::vector<double> right;
         for (const NodeField& of : ofThrusts_) right.push_back(dot(load, of));
         const std::vector<double> y = thrusts_.numbers(stretched_, right);
-        for (std::size_t t = 0; t < y.size(); ++t)
-            for (std::size_t n = 0; n < phi.values().size(); ++n) phi.values()[n] += y[t] * ofThrusts_[t].values()[n];
+        for (std::size_t t = 0; t < y.size(); ++t) add(phi, y[t], ofThrusts_[t]);
     }
 
     static void demandConverged(const SolveReport& report)
@@ -159,8 +158,8 @@ private:
             throw Error("a shape of deep dents is not solved as well as asked for: " + errorText(report));
     }
 
-    /// Finds the phi of each thrust T with what the membrane answers to it, T - C^-1 C T, and minus what that is by under
-    /// the others' stresses.
+    /// Finds the phi of each thrust T with what the membrane answers to it, T - C^-1 C T, and minus what that is by
+    /// under the others' stresses.
     void findThrusts()
     {
         std::vector<NodeField> loads;

@@ -51,8 +51,8 @@ double looseFor(double tolerance)
     return std::min(kLoosest, std::sqrt(tolerance));
 }
 
-/// What the thrusts of a shell take off its answers. Each is solved for alone, in doubles: what is left of a work may be a
-/// fiftieth of it, and several loads together may stop after a step.
+/// What the thrusts of a shell take off its answers. Each is solved for alone, in doubles: what is left of a work may
+/// be a fiftieth of it, and several loads together may stop after a step.
 class ThrustAnswers {
 public:
     ThrustAnswers(MultigridShellSolver& solver, const Shell& shell, double tolerance) : thrusts_(shell)

@@ -27,10 +27,10 @@ struct Shell {
     NodeField  curvatureX, curvatureZ, curvatureXZ; ///< kx, kz, kxz [1/m], > 0 where the surface bulges to the finger
     NodeField  stressBed{}; ///< that holds phi at 0 where there is no sheet to carry a force [1/(N m^3)]: adds
                             ///< -1/2 int bed phi^2; empty: none
-    /// Fields T [1] that phi may have besides, each times a number [N m] of its own, and that the bed does not hold: phi =
-    /// psi + sum of y T, bed and sides hold psi, and the energy is stationary in each y too. Where free borders are in several
-    /// pieces, Airy's function is another linear function at each, by the forces that the sheet carries between them, as
-    /// an arch does. A T is linear where there is a bed.
+    /// Fields T [1] that phi may have besides, each times a number [N m] of its own, and that the bed does not hold:
+    /// phi = psi + sum of y T, bed and sides hold psi, and the energy is stationary in each y too. Where free borders
+    /// are in several pieces, Airy's function is another linear function at each, by the forces that the sheet carries
+    /// between them, as an arch does. A T is linear where there is a bed.
     std::vector<NodeField> thrusts{};
     NodeField sheared{}; ///< share of shearWork() that counts at the nodes [1]: none where they stand for no free sheet
                          ///< or its sides; empty: all
@@ -43,7 +43,8 @@ struct Shell {
 /// ratio is -nu.
 [[nodiscard]] Plate membraneOf(const Shell& shell);
 
-/// Returns whether phi is held by no side and no bed: it is then known but for a linear function, which carries no force.
+/// Returns whether phi is held by no side and no bed: it is then known but for a linear function, which carries no
+/// force.
 [[nodiscard]] bool isStressFree(const Shell& shell) noexcept;
 
 /// The work that a load does beyond that along w because the sheet is sheared across its thickness as well, to the

@@ -14,8 +14,8 @@ struct ShellLoad {
     NodeField onPhi; ///< of Airy's function [1]
 };
 
-/// The fields of thrust of a shell, without the numbers y [N m] that go with them: with K its matrix for w and psi, and f
-/// the forces,
+/// The fields of thrust of a shell, without the numbers y [N m] that go with them: with K its matrix for w and psi,
+/// and f the forces,
 ///
 ///     K x + U y = f,     U' x - G y = 0     x = K^-1 f - K^-1 U y,     (G + U' K^-1 U) y = U' K^-1 f
 ///

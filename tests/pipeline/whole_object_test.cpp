@@ -22,6 +22,15 @@ constexpr double   kModulus = 300e3, kSpacing = 1e-3; // [Pa], [m]
 
 using Where = std::function<bool(double, double)>;
 
+/// An object of points of one modulus, with the share of each that is held.
+SoftObject objectOf(std::vector<glm::dvec3> points, std::vector<double> held, const Material& material,
+                    double modulus = 1e6)
+{
+    std::vector<double> moduli(points.size(), modulus);
+    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus), material)
+        .withHeld(std::move(held));
+}
+
 /// A flat sheet of random points.
 SoftObject sheetOf(const Where& inside, const Where& held, unsigned seed, double spacing = kSpacing)
 {
@@ -36,9 +45,7 @@ SoftObject sheetOf(const Where& inside, const Where& held, unsigned seed, double
         points.emplace_back(x, y, 0);
         shares.push_back(held(x, y));
     }
-    std::vector<double> moduli(points.size(), kModulus);
-    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus), kSheet)
-        .withHeld(std::move(shares));
+    return objectOf(std::move(points), std::move(shares), kSheet, kModulus);
 }
 
 bool isInDrum(double x, double y)
@@ -214,9 +221,7 @@ SoftObject dishOf(unsigned seed)
         points.emplace_back(x, y, std::sqrt(60e-3 * 60e-3 - r * r));
         shares.push_back(r < 6e-3);
     }
-    std::vector<double> moduli(points.size(), kModulus);
-    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus), kSheet)
-        .withHeld(std::move(shares));
+    return objectOf(std::move(points), std::move(shares), kSheet, kModulus);
 }
 
 TEST(WholeObject, ADishBendsAboutItsStemHoweverItsPointsAreDrawn)
@@ -256,10 +261,7 @@ SoftObject lobeOf(double halfThickness, unsigned seed)
         points.emplace_back(kWide * x, kLong * y, side * halfThickness * std::sqrt(rest));
         shares.push_back(kWide * x < -6e-3);
     }
-    std::vector<double> moduli(points.size(), kModulus);
-    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
-                      {.thickness = 3e-3, .poissonRatio = 0.45})
-        .withHeld(std::move(shares));
+    return objectOf(std::move(points), std::move(shares), {.thickness = 3e-3, .poissonRatio = 0.45}, kModulus);
 }
 
 TEST(WholeObject, OfATwoFacedLobeOnlyTheTouchedFaceBends)
@@ -340,10 +342,7 @@ SoftObject gutterOf(double radius, unsigned seed)
     for (int n = 0; seed != 0 && n < 4000; ++n) add(along(bits), across(bits));
     for (int i = 0; seed == 0 && i < 125; ++i) // each in the middle of its share
         for (int j = 0; j < 50; ++j) add(-49.6e-3 + 0.8e-3 * i, -19.6e-3 + 0.8e-3 * j);
-    std::vector<double> moduli(points.size(), 1e6);
-    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
-                      {.thickness = 1e-3, .poissonRatio = 0.3})
-        .withHeld(std::move(shares));
+    return objectOf(std::move(points), std::move(shares), {.thickness = 1e-3, .poissonRatio = 0.3});
 }
 
 /// Truth: CalculiX, shells S8R of 2 mm, all of the held end fixed; beams of the same sections are 3 % stiffer. A
@@ -379,13 +378,11 @@ SoftObject domeOnSides(const Where& inside, const Where& held)
             points.emplace_back(x, y, std::sqrt(0.12 * 0.12 - x * x - y * y) - 0.12);
             shares.push_back(held(x, y));
         }
-    std::vector<double> moduli(points.size(), 1e6);
-    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus), kSheet)
-        .withHeld(std::move(shares));
+    return objectOf(std::move(points), std::move(shares), kSheet);
 }
 
-/// Truth: CalculiX, bricks of 20 nodes, three meshes, within 2 %; shells S8R agree within 1.5 %. With Airy's function held
-/// at 0 behind what is held as well, the last two were felt at 45.1 and 37.7 N/m.
+/// Truth: CalculiX, bricks of 20 nodes, three meshes, within 2 %; shells S8R agree within 1.5 %. With Airy's function
+/// held at 0 behind what is held as well, the last two were felt at 45.1 and 37.7 N/m.
 TEST(WholeObject, WhatIsHeldCarriesTheForcesInADome)
 {
     constexpr double kHalf = 35e-3;
@@ -449,7 +446,8 @@ TEST(WholeObject, ATableOfAnArchIsThatOfTheReference)
     }
 }
 
-/// A panel of a tube of radius 40 mm, 1 mm thick, held along a straight side, of points some millimetres apart with noise.
+/// A panel of a tube of radius 40 mm, 1 mm thick, held along a straight side, of points some millimetres apart with
+/// noise.
 SoftObject panelOf(double spacing, double noise, unsigned seed)
 {
     std::mt19937_64                        bits(seed);
@@ -465,10 +463,7 @@ SoftObject panelOf(double spacing, double noise, unsigned seed)
                                 r * std::cos(angle) - 40e-3);
             shares.push_back(angle < -0.8);
         }
-    std::vector<double> moduli(points.size(), 1e6);
-    return SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
-                      {.thickness = 1e-3, .poissonRatio = 0.45})
-        .withHeld(std::move(shares));
+    return objectOf(std::move(points), std::move(shares), {.thickness = 1e-3, .poissonRatio = 0.45});
 }
 
 /// It bends without stretching. Curvatures that noise made were felt as 1.5 to 5 times the stiffness.
@@ -496,10 +491,7 @@ TEST(WholeObject, ALongArchIsOneHoweverNarrow)
             points.emplace_back(x, 1e-3 * j, -0.8 * x * x);
             shares.push_back(std::abs(i) > 130);
         }
-    std::vector<double> moduli(points.size(), 1e6);
-    const auto          arch = SoftObject(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus),
-                                          {.thickness = 2e-3, .poissonRatio = 0.45})
-                          .withHeld(std::move(shares));
+    const auto  arch  = objectOf(std::move(points), std::move(shares), {.thickness = 2e-3, .poissonRatio = 0.45});
     const Patch patch = touched(arch, 0, 0, settings);
     EXPECT_EQ(patch.flatBecause, "");
     EXPECT_NEAR(patch.feltStiffness / 3.873, 1, 0.05) << "CalculiX, bricks of 1.2 mm and 20 nodes";

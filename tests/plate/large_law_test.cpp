@@ -112,9 +112,9 @@ TEST(LargeLaw, IsThatOfOtherSheetsToo)
     }
 }
 
-/// Beyond a border within its window a bed holds the stresses, also where no side of the window does: three corners that
-/// were held besides made an error of 0.9. Of three shapes none moves a free border well: 1.4 % where the other sides are
-/// held in the plane, 4.2 % where they are supported.
+/// Beyond a border within its window a bed holds the stresses, also where no side of the window does: three corners
+/// that were held besides made an error of 0.9. Of three shapes none moves a free border well: 1.4 % where the other
+/// sides are held in the plane, 4.2 % where they are supported.
 TEST(LargeLaw, IsThatOfASheetThatEndsWithinItsWindow)
 {
     for (const auto& [k, edge, close] : {std::tuple{0.0, Edge::clamped, 0.02}, std::tuple{20.0, Edge::clamped, 0.02},

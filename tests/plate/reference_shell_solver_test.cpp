@@ -212,9 +212,9 @@ TEST(ReferenceShellSolver, WhereItsStressesAreHeldItEndsAsAtItsOwnBorder)
     EXPECT_NEAR(errors[2], std::pow(64.0 / 65, 5) - 1, 0.01);
 }
 
-/// A strip of width b, clamped at both ends and pressed by P across its middle, nu = 0: a beam of length L on which the
-/// thrust N b acts as a pressure k N. The beam gives way by P L^3 / (192 D b) in the middle, by the pressure p by p L^4 /
-/// (384 D) there and p L^5 / (720 D) in all, and N shortens it by as much as k times all of that.
+/// A strip of width b, clamped at both ends and pressed by P across its middle, nu = 0: a beam of length L on which
+/// the thrust N b acts as a pressure k N. The beam gives way by P L^3 / (192 D b) in the middle, by the pressure p by
+/// p L^4 / (384 D) there and p L^5 / (720 D) in all, and N shortens it by as much as k times all of that.
 TEST(ReferenceShellSolver, AnArchThrusts)
 {
     constexpr double    kArch = 20; // [1/m]

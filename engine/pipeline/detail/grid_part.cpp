@@ -21,9 +21,10 @@ std::pair<int, int> reach(int first, int last, int cells)
     return {std::clamp((first + last - many) / 4 * 2, 0, cells - many), many}; // in the middle, at an even node
 }
 
-/// Returns the edges of Airy's function on a window whose sides lie in the void. They are clamped: a free one stands for a
-/// frame that holds the void in its plane, and what is curved resists by it (a gutter was felt 1.4 times too stiff). But
-/// all of a side is free on which one node has no bed: what is held there carries forces on beyond the window.
+/// Returns the edges of Airy's function on a window whose sides lie in the void. They are clamped: a free one stands
+/// for a frame that holds the void in its plane, and what is curved resists by it (a gutter was felt 1.4 times too
+/// stiff). But all of a side is free on which one node has no bed: what is held there carries forces on beyond the
+/// window.
 PlateEdges edgesInVoid(const NodeField& bed, const PlateGrid& grid)
 {
     const auto along = [&](bool alongX, int at) {

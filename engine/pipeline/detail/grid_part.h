@@ -7,8 +7,9 @@
 
 namespace palp {
 
-/// A rectangle of a grid's nodes: of a window that spans an object, what the object covers, which is less than a quarter
-/// of it. Only that is solved for; what is cut off is the void beyond free borders, and what lies behind held ones.
+/// A rectangle of a grid's nodes: of a window that spans an object, what the object covers, which is less than a
+/// quarter of it. Only that is solved for; what is cut off is the void beyond free borders, and what lies behind held
+/// ones.
 class GridPart {
 public:
     /// Takes the sheet with a margin; all of the grid where the window spans no object.

@@ -40,13 +40,8 @@ std::vector<Nodes> connected(const PlateGrid& grid, const Which& isOne)
     return pieces;
 }
 
-bool isHeld(const Patch& patch, std::size_t node)
-{
-    return !patch.held.values().empty() && patch.held.values()[node] >= 0.5;
-}
-
-/// Returns how many supports the sheet surrounds, with the bare holes in them, beside another support: forces go round such
-/// a one by an Airy's function that is another one after each turn.
+/// Returns how many supports the sheet surrounds, with the bare holes in them, beside another support: forces go round
+/// such a one by an Airy's function that is another one after each turn.
 int postsWithin(const Patch& patch)
 {
     const PlateGrid&         grid     = patch.plate.grid;

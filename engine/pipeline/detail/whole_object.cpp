@@ -19,12 +19,13 @@ namespace {
 /// The solver of shells converges up to 3e-3: dishes, lobes and gutters are 1 % too stiff by it.
 constexpr double kVoidOfPlates = 1e-4, kVoidOfShells = 3e-3;
 
-/// Beyond a free border no sheet carries a force: Airy's function is held at 0 there, by a bed of 25 C / cell^4 at nodes
-/// that are half covered, and of 270 at bare ones. A softer bed moves the border outwards: with 1 in place of 30,
-/// gutters that are held at one end are 7 to 11 % stiffer; 100 takes 2 % off, and takes more steps. With a membrane that
-/// merely gives way a thousand times as much there they were 24 to 53 % too stiff, because the void went on curving and
-/// resisted at a long lever. The curvature is not cut out: one that ends at a border along which it changes belongs to
-/// no surface, and such a sheet carries loads by stresses of its own (a gutter of 100 mm was felt five times too stiff).
+/// Beyond a free border no sheet carries a force: Airy's function is held at 0 there, by a bed of 25 C / cell^4 at
+/// nodes that are half covered, and of 270 at bare ones. A softer bed moves the border outwards: with 1 in place of
+/// 30, gutters that are held at one end are 7 to 11 % stiffer; 100 takes 2 % off, and takes more steps. With a
+/// membrane that merely gives way a thousand times as much there they were 24 to 53 % too stiff, because the void went
+/// on curving and resisted at a long lever. The curvature is not cut out: one that ends at a border along which it
+/// changes belongs to no surface, and such a sheet carries loads by stresses of its own (a gutter of 100 mm was felt
+/// five times too stiff).
 constexpr double kStressBed = 30, kLeastCovered = 0.1; // [1]
 
 double shareOf(double covered, double beyond)
@@ -70,7 +71,6 @@ bool isSurrounded(const Patch& patch)
     constexpr int    kDirections = 16;
     constexpr double kShare      = 0.25; // [1]
     const PlateGrid& grid        = patch.plate.grid;
-    const auto       isHeld      = [&](std::size_t n) { return patch.held.values()[n] > 0.5; };
     const auto       along       = [&](std::size_t n, int direction) {
         const double angle = 2 * std::numbers::pi * direction / kDirections;
         return double(int(n) / grid.nodesZ()) * std::cos(angle) + double(int(n) % grid.nodesZ()) * std::sin(angle);
@@ -79,11 +79,11 @@ bool isSurrounded(const Patch& patch)
     std::array<double, kDirections> farthest{};
     farthest.fill(-std::numeric_limits<double>::infinity());
     for (std::size_t n = 0; n < grid.nodes(); ++n)
-        for (int d = 0; d < kDirections && isOnSheet(patch, n) && isHeld(n); ++d)
+        for (int d = 0; d < kDirections && isOnSheet(patch, n) && isHeld(patch, n); ++d)
             farthest[std::size_t(d)] = std::max(farthest[std::size_t(d)], along(n, d));
     double inside = 0, all = 0;
     for (std::size_t n = 0; n < grid.nodes(); ++n) {
-        if (!isOnSheet(patch, n) || isHeld(n)) continue;
+        if (!isOnSheet(patch, n) || isHeld(patch, n)) continue;
         bool within = true;
         for (int d = 0; d < kDirections && within; ++d) within = along(n, d) <= farthest[std::size_t(d)];
         inside += within;
@@ -94,9 +94,9 @@ bool isSurrounded(const Patch& patch)
 
 } // namespace
 
-bool isOnSheet(const Patch& patch, std::size_t node)
+bool isHeld(const Patch& patch, std::size_t node)
 {
-    return patch.covered.values().empty() || patch.covered.values()[node] > 0.5;
+    return !patch.held.values().empty() && patch.held.values()[node] >= 0.5;
 }
 
 void cutOut(Patch& patch, double spacing, Theory theory)
@@ -116,8 +116,8 @@ void cutOutMembrane(Patch& patch)
     const FreePieces pieces = freePieces(patch);
     patch.thrustsLeftOut    = pieces.leftOut;
     if (!patch.covered.values().empty()) patch.stressBed = NodeField(grid);
-    // What is held carries the forces of what it surrounds, and those from one support to another, like the ground behind
-    // it. Elsewhere that ground has none to carry, and the solver converges faster on a bed.
+    // What is held carries the forces of what it surrounds, and those from one support to another, like the ground
+    // behind it. Elsewhere that ground has none to carry, and the solver converges faster on a bed.
     const bool bears = patch.spans = isSurrounded(patch) || pieces.count > 1;
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n) {
         double&      compliance     = patch.membraneCompliance.values()[n];
@@ -166,13 +166,6 @@ void findSheared(Patch& patch, const NodeField& held)
                 for (int b = j - kAway; b <= j + kAway; ++b) free = free && isFree(a, b);
             patch.sheared(i, j) = free;
         }
-}
-
-NodeField sheetRigidity(const Patch& patch)
-{
-    NodeField sheet = patch.plate.rigidity;
-    for (std::size_t n = 0; n < patch.covered.values().size(); ++n) sheet.values()[n] = sheetRigidity(patch, n);
-    return sheet;
 }
 
 double sheetRigidity(const Patch& patch, std::size_t node)

@@ -4,8 +4,8 @@
 
 namespace palp {
 
-/// Returns whether a node lies on the sheet, not beyond a border of an object that the window spans.
-[[nodiscard]] bool isOnSheet(const Patch& patch, std::size_t node);
+/// Returns whether the scene holds a node.
+[[nodiscard]] bool isHeld(const Patch& patch, std::size_t node);
 
 /// Leaves of a patch's plate what the object covers: beyond its border the rigidity is next to nothing, so that the
 /// border is free. Fills in patch.covered and patch.beyond.
@@ -14,11 +14,11 @@ namespace palp {
 /// \pre the plate's rigidity is that of the sheet, also beyond its border
 void cutOut(Patch& patch, double spacing, Theory theory);
 
-/// Does the same with the membrane, which carries no force beyond the border (patch.stressBed), and where nodes are held
-/// hardly stretches: what surrounds a shell then stays where it is in its plane. Fills in patch.thrusts too.
+/// Does the same with the membrane, which carries no force beyond the border (patch.stressBed), and where nodes are
+/// held hardly stretches: what surrounds a shell then stays where it is in its plane. Fills in patch.thrusts too.
 ///
-/// Airy's function is held at 0 at a free border. Where these are in several pieces it is another linear function at each,
-/// by the forces that the sheet carries between them, from one support to another or past a hole.
+/// Airy's function is held at 0 at a free border. Where these are in several pieces it is another linear function at
+/// each, by the forces that the sheet carries between them, from one support to another or past a hole.
 /// \pre its compliance is that of the sheet, also beyond its border
 void cutOutMembrane(Patch& patch);
 
@@ -34,9 +34,8 @@ void holdNodes(Patch& patch, const NodeField& held, double foundation, const Nod
 /// \param held  as holdNodes() has it; empty: nothing is
 void findSheared(Patch& patch, const NodeField& held);
 
-/// Returns the rigidity of the sheet at the nodes, or at one [N m], also where cutOut() has taken it away.
-[[nodiscard]] NodeField sheetRigidity(const Patch& patch);
-[[nodiscard]] double    sheetRigidity(const Patch& patch, std::size_t node);
+/// Returns the rigidity of the sheet at a node [N m], also where cutOut() has taken it away.
+[[nodiscard]] double sheetRigidity(const Patch& patch, std::size_t node);
 
 /// Returns the footprint's load on the sheet alone, of the same force: none lies beyond the border.
 /// \param covered   share of the sheet at the nodes [1]
