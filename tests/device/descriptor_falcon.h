@@ -54,9 +54,10 @@ private:
 /// The child's link: a Falcon whose firmware runs, at the other end of a descriptor, under a guardian.
 class DescriptorLink final : public FalconLink {
 public:
-    /// \param hangs  writing waits while it is true; may be null
-    DescriptorLink(int fd, const std::atomic<bool>* hangs)
-        : fd_(fd), hangs_(hangs), guardian_({.fd = fd}, kFalconZero, "the Falcon of this test")
+    /// \param hangs   writing waits while it is true; may be null
+    /// \param pushes  becomes whether the driver's last packet does; may be null
+    explicit DescriptorLink(int fd, const std::atomic<bool>* hangs = nullptr, std::atomic<bool>* pushes = nullptr)
+        : fd_(fd), hangs_(hangs), pushes_(pushes), guardian_({.fd = fd}, kFalconZero, "the Falcon of this test")
     {
     }
 
@@ -69,6 +70,7 @@ public:
     {
         // Once, as the driver's own link does: the zeros of its end still pass.
         if (!guardian_.isWatching() && !std::exchange(isLost_, true)) throw LinkLost("its guardian has ended");
+        if (pushes_) *pushes_ = kFalconZero.pushes(bytes);
         const std::span out = guardian_.pass(bytes);
         while (hangs_ && *hangs_) std::this_thread::sleep_for(std::chrono::microseconds(100));
         if (send(fd_, out.data(), out.size(), MSG_NOSIGNAL) != ssize_t(out.size()))
@@ -89,6 +91,7 @@ public:
 private:
     int                      fd_;
     const std::atomic<bool>* hangs_;
+    std::atomic<bool>*       pushes_;
     bool                     isLost_ = false;
     Guardian                 guardian_;
 };

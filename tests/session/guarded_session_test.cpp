@@ -38,7 +38,7 @@ void touchSheet(int fd)
     static_cast<void>(catchInterrupts());
     const SheetSession session(sheetScene(kWart));
     Deformation        deformation(session.object, session.scene);
-    FalconDevice       device([fd] { return std::make_unique<DescriptorLink>(fd, nullptr); });
+    FalconDevice       device([fd] { return std::make_unique<DescriptorLink>(fd); });
     device.open();
     std::string warning;
     static_cast<void>(
