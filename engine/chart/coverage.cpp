@@ -10,6 +10,11 @@
 namespace palp {
 namespace {
 
+double largestCell(const PlateGrid& grid)
+{
+    return std::max(grid.spacingX, grid.spacingZ);
+}
+
 /// Returns the distance of each node from the nearest point [m].
 NodeField distanceToPoints(const PatchWindow& window, std::span<const ChartPoint> positions)
 {
@@ -32,7 +37,7 @@ NodeField distanceToPoints(const PatchWindow& window, std::span<const ChartPoint
 /// distance less e; the best of those around gives the depth.
 NodeField depthInDiscs(const PlateGrid& grid, const NodeField& distance, double radius, double deepest)
 {
-    const double cell  = std::max(grid.spacingX, grid.spacingZ);
+    const double cell  = largestCell(grid);
     const int    reach = int(std::ceil((deepest + 2 * cell) / std::min(grid.spacingX, grid.spacingZ)));
     NodeField    depth(grid, std::numeric_limits<double>::infinity());
     for (int i = 0; i < grid.nodesX(); ++i)
@@ -50,18 +55,26 @@ NodeField depthInDiscs(const PlateGrid& grid, const NodeField& distance, double 
 
 } // namespace
 
-NodeField coveredShare(const PatchWindow& window, std::span<const ChartPoint> positions, double pointSpacing)
+NodeField depthWithin(const PatchWindow& window, std::span<const ChartPoint> positions, double pointSpacing,
+                      double deepest)
 {
     constexpr double kBeyond  = 0.5; // spacings from the last points to the border [1]
     const PlateGrid& grid     = window.grid;
-    const double     cell     = std::max(grid.spacingX, grid.spacingZ);
-    const double     radius   = kResamplingNearby * resamplingWidth(pointSpacing, cell);
+    const double     radius   = kResamplingNearby * resamplingWidth(pointSpacing, largestCell(grid));
+    const double     shift    = radius - kBeyond * pointSpacing; // [m] from the discs' border inwards
     const NodeField  distance = distanceToPoints(window, positions);
-    NodeField        share    = depthInDiscs(grid, distance, radius, radius + cell);
-    for (std::size_t n = 0; n < share.values().size(); ++n) {
-        const double inside = share.values()[n] - radius + kBeyond * pointSpacing; // [m] of the border
-        share.values()[n]   = distance.values()[n] > radius ? 0 : std::clamp(0.5 + inside / cell, 0.0, 1.0);
+    NodeField        depth    = depthInDiscs(grid, distance, radius, deepest + shift);
+    for (std::size_t n = 0; n < depth.values().size(); ++n) {
+        const double beyond = distance.values()[n] - radius; // the discs' border
+        depth.values()[n]   = (beyond > 0 ? -beyond : std::min(depth.values()[n], deepest + shift)) - shift;
     }
+    return depth;
+}
+
+NodeField coveredShare(const PlateGrid& grid, const NodeField& depth)
+{
+    NodeField share = depth;
+    for (double& value : share.values()) value = std::clamp(0.5 + value / largestCell(grid), 0.0, 1.0);
     return share;
 }
 

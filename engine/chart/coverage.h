@@ -5,8 +5,8 @@
 
 namespace palp {
 
-/// Returns the share of the sheet at the nodes [1]: 1 inside, 0 outside, and between them over one cell, half of it on
-/// the border.
+/// Returns how deep the nodes lie within the border of a sheet [m]: up to `deepest`, and below 0 beyond the border, up
+/// to some cells.
 ///
 /// The border is that of the points' closing: the sheet is what no disc can reach that holds no point. The disc's
 /// radius is 2.5 spacings, of the points or half of the nodes', whichever is larger, so that neither the gaps between
@@ -17,7 +17,12 @@ namespace palp {
 /// \differs the paper's patch has no border: its rigidity goes on, or ends with the window
 /// \source  closing as in Serra 1982, "Image Analysis and Mathematical Morphology"; the distance from outside as in
 ///          Felzenszwalb and Huttenlocher 2012, restricted to the border's neighbourhood
-[[nodiscard]] NodeField coveredShare(const PatchWindow& window, std::span<const ChartPoint> positions,
-                                     double pointSpacing);
+[[nodiscard]] NodeField depthWithin(const PatchWindow& window, std::span<const ChartPoint> positions,
+                                    double pointSpacing, double deepest);
+
+/// Returns the share of the sheet at the nodes [1]: 1 inside, 0 outside, and between them over one cell, half of it on
+/// the border.
+/// \param depth  of depthWithin(), from a cell and more
+[[nodiscard]] NodeField coveredShare(const PlateGrid& grid, const NodeField& depth);
 
 } // namespace palp

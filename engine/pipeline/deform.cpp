@@ -203,30 +203,53 @@ std::vector<std::optional<ChartPoint>> unroll(const Patch& patch, const SoftObje
                           gatherRadius(settings, patch.spacing), careful);
 }
 
-/// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
-double turnedShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
+/// Returns the mean over the window of a function of the cosine between a point's normal and the sphere's.
+template <class Function>
+double meanAgainstSphere(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings,
+                         const Function& of)
 {
-    constexpr double      kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
-    const double          side   = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
-    double                turned = 0, all = 0;
-    constexpr std::size_t kEnough = 8000; // points: the share is then right to 0.001
+    const double          side = glm::dot(patch.sphere.fit.normal(surface.anchor), surface.normal) < 0 ? -1 : 1;
+    double                sum = 0, all = 0;
+    constexpr std::size_t kEnough = 8000; // points: a share is then right to 0.001
     const EvenShare       chosen  = EvenShare::of(surface.size(), kEnough);
     for (std::size_t k = 0; k < surface.size(); ++k) {
         if (!chosen.has(surface.rank(k))) continue;
         const glm::dvec3 p = surface.place(k);
         if (glm::length(p - surface.anchor) > settings.window / 2) continue;
-        const double cosine = side * glm::dot(surface.normalAt(k), patch.sphere.fit.normal(p));
-        turned += std::clamp((kAlong - cosine) / (kAlong - kTurned), 0.0, 1.0);
+        sum += of(side * glm::dot(surface.normalAt(k), patch.sphere.fit.normal(p)));
         ++all;
     }
-    return all > 0 ? turned / all : 0;
+    return all > 0 ? sum / all : 0;
+}
+
+/// Returns the share of the window's points whose normal is turned away from the sphere's, fully from 60 degrees on.
+double turnedShare(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
+{
+    constexpr double kAlong = 0.77, kTurned = 0.5; // cosines of 40 and 60 degrees [1]
+    return meanAgainstSphere(patch, surface, settings, [](double cosine) {
+        return std::clamp((kAlong - cosine) / (kAlong - kTurned), 0.0, 1.0);
+    });
+}
+
+/// Returns by how much the surface lies off the sphere, over the window [1]. With a share e it slopes against it by
+/// some 4 e, which shortens lengths by 8 e^2. Of an object that the window spans the slopes tell: it may be far
+/// narrower one way, as gutters are, whose stiffness goes with the fifth power of their width; so they count 2.5 times.
+double offSphere(const Patch& patch, const TouchedSurface& surface, const PatchSettings& settings)
+{
+    const double misfit = patch.sphere.fit.misfit, noise = patch.noise;
+    if (settings.windowOf == WindowOf::object) {
+        constexpr double kWeight = 2.5, kOfNoise = 0.1; // of normals that noise tilts, twice what is expected [1]
+        const double     rough   = noise / patch.spacing;
+        const auto       shorter = [](double cosine) { return std::max(0.0, 1 - std::abs(cosine)); };
+        const double     slopes  = meanAgainstSphere(patch, surface, settings, shorter) - kOfNoise * rough * rough;
+        return kWeight * std::sqrt(std::max(0.0, slopes) / 8);
+    }
+    return std::sqrt(std::max(0.0, misfit * misfit - noise * noise)) / settings.window;
 }
 
 /// Returns the share of the exponential map in the positions: none where the sphere follows the surface, all of it on
-/// fingers, edges and folds, and in between a blend, so that no step is felt where one gives way to the other.
-///
-/// A surface that lies off the sphere by a share e of the window slopes against it by some 4 e, which shortens lengths
-/// by 8 e^2: 0.3 % at the first bound, 2 % at the second.
+/// fingers, edges and folds, and in between a blend, so that no step is felt where one gives way to the other. Lengths
+/// are shorter by 0.3 % at the first bound of offSphere(), and by 2 % at the second.
 ///
 /// Where a part of the window stands against the sphere by some 50 degrees, as behind a sharp rim, the misfit need not
 /// be large: then that part decides, before it comes to lie over the rest.
@@ -234,15 +257,14 @@ double unrolledShare(const Patch& patch, const TouchedSurface& surface, const Pa
 {
     if (settings.map != Map::lambertAzimuthal) return 0; // the user has chosen how a sphere is laid flat
     if (patch.normalFelt) return 1;
-    constexpr double kFollows = 0.02, kAstray = 0.05; // misfit over the window [1]
-    const double     misfit = patch.sphere.fit.misfit, noise = patch.noise;
-    const double     shape = std::sqrt(std::max(0.0, misfit * misfit - noise * noise)) / settings.window;
-    constexpr double kFew = 0.02, kMany = 0.06; // share of the points that stand against the sphere [1]
+    constexpr double kFollows = 0.02, kAstray = 0.05; // of offSphere() [1]
+    constexpr double kFew = 0.02, kMany = 0.06;       // share of the points that stand against the sphere [1]
     const auto       risen = [](double x, double from, double to) {
         const double t = std::clamp((x - from) / (to - from), 0.0, 1.0);
         return t * t * (3 - 2 * t);
     };
-    return std::max(risen(shape, kFollows, kAstray), risen(turnedShare(patch, surface, settings), kFew, kMany));
+    return std::max(risen(offSphere(patch, surface, settings), kFollows, kAstray),
+                    risen(turnedShare(patch, surface, settings), kFew, kMany));
 }
 
 /// The points of a ball whose place in the chart is found.
@@ -516,13 +538,13 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
     patch.below = meanFoundation(patch.plate);
     if (settings.windowOf == WindowOf::object) cutOut(patch, sparsest, settings.theory);
-    NodeField held{};
     if (!object.held().empty()) {
-        held = std::move((next++)->rigidity);
+        NodeField held = std::move((next++)->rigidity);
         for (double& share : held.values()) share = std::log(share);
-        holdNodes(patch, held, settings.foundation, unitLoad(patch, settings));
+        holdNodes(patch, held, resamplingWidth(finest, patch.window.grid.spacingX), settings.foundation,
+                  unitLoad(patch, settings));
     }
-    if (settings.windowOf == WindowOf::object && settings.theory == Theory::shell) findSheared(patch, held);
+    if (settings.windowOf == WindowOf::object && settings.theory == Theory::shell) findSheared(patch);
     refuseIfLoose(patch, settings);
     if (object.stiffening().empty()) return;
     patch.stiffeningAtNodes = std::move(next->rigidity);

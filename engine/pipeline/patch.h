@@ -134,10 +134,13 @@ struct Patch {
     double      noise       = 0; ///< standard deviation of the points there about the surface [m]
     double      thickness   = 0; ///< of the object at the contact [m]
     std::size_t nodesWithoutPoint = 0; ///< see Resampled
-    NodeField   covered{};  ///< share of the sheet at the nodes, where the window spans the object [1]; empty: all
-    double      beyond = 1; ///< rigidity beyond the sheet's border over the sheet's [1]; 1: there is no border
+    NodeField   inside{}; ///< how deep the nodes lie within the object's border where the window spans it [m], see
+                          ///< depthWithin(); empty: there is no border
+    NodeField covered{};  ///< share of the sheet at the nodes, where the window spans the object [1]; empty: all
+    double    beyond = 1; ///< rigidity beyond the sheet's border over the sheet's [1]; 1: there is no border
     NodeField
-        held{}; ///< share of each node that the scene holds, by a foundation and in the sheet's plane [1]; empty: none
+        held{}; ///< share of each node that the scene holds, by a foundation and in the sheet's plane: from 0 to 1 over
+                ///< a cell [1]; empty: none
     std::size_t heldNodes = 0; ///< nodes that the scene holds, of the piece that is touched
     NodeField   sheared{};     ///< see Shell, where the window spans the object
     /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.

@@ -110,8 +110,8 @@ FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell&
     const double        loose = looseFor(tolerance);
     const ThrustAnswers thrusts(solver, shell, tolerance);
     ShellAnswer         first = solver.solve(loads.subspan(whole, 1), std::min(drawn, loose)).front();
-    // What thrust takes off a work leaves its error.
-    const double closer = loose * std::sqrt(thrusts.shareLeft(first, loads[whole]));
+    // What thrust takes off a work leaves its error, and loads together may stop with three times the error of one.
+    const double left = thrusts.shareLeft(first, loads[whole]), closer = left < 1 ? loose * std::sqrt(left) / 3 : loose;
     if (closer < std::min(drawn, loose)) first = std::move(solver.solve(loads.subspan(whole, 1), closer).front());
     auto              rest = solver.solve(others, closer);
     const Shear       shear(shell);

@@ -12,6 +12,12 @@ namespace {
 
 constexpr double kSpacing = 1e-3; // [m] of random points: one for each square of it
 
+NodeField shareOf(int cells, const std::vector<ChartPoint>& points, double spacing)
+{
+    const PatchWindow window = PatchWindow::square(100e-3, cells);
+    return coveredShare(window.grid, depthWithin(window, points, spacing, 2 * 100e-3 / cells));
+}
+
 NodeField sharesOf(const std::function<bool(double, double)>& inside, unsigned seed, int cells = 128)
 {
     std::mt19937_64                        bits(seed);
@@ -21,7 +27,7 @@ NodeField sharesOf(const std::function<bool(double, double)>& inside, unsigned s
         const double x = along(bits), z = along(bits);
         if (inside(x, z)) points.push_back({x, z});
     }
-    return coveredShare(PatchWindow::square(100e-3, cells), points, kSpacing);
+    return shareOf(cells, points, kSpacing);
 }
 
 double areaOf(const NodeField& share)
@@ -77,7 +83,7 @@ TEST(CoveredShare, OfPointsMuchCloserThanNodesIsTheirs)
     std::vector<ChartPoint> points;
     for (int i = 0; i < 200; ++i)
         for (int k = 0; k < 200; ++k) points.push_back({-25e-3 + (i + 0.5) * 0.25e-3, -25e-3 + (k + 0.5) * 0.25e-3});
-    const NodeField share = coveredShare(PatchWindow::square(100e-3, 64), points, 0.25e-3);
+    const NodeField share = shareOf(64, points, 0.25e-3);
     EXPECT_NEAR(areaOf(share) / (50e-3 * 50e-3), 1, 0.01);
 }
 

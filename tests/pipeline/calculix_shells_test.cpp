@@ -343,9 +343,8 @@ TEST(CalculixShells, WhatHasBordersOfItsOwnBendsAboutWhatHoldsIt)
     for (const CalculixShell& of : kCalculixShells) {
         if (kindOf(of.name) != Kind::whole || of.name.ends_with("dish") || isBetween(of.name)) continue;
         const double felt = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
-        // Measured: lobes -0.3 and 0.4 %, drum -1.2, its wart -2.2, disc -3.2, whose stem is nine cells wide and is
-        // found to a part of one: by CalculiX a stem of 7.56 mm in place of 8 is 7 % softer.
-        EXPECT_LT(std::abs(felt), 0.04) << of.name << ", " << of.thickness << " m";
+        std::printf("  %s, %g mm: %+.1f %%\n", std::string(of.name).c_str(), 1e3 * of.thickness, 100 * felt);
+        EXPECT_LT(std::abs(felt), 0.03) << of.name << ", " << of.thickness << " m";
     }
 }
 
@@ -365,10 +364,10 @@ TEST(CalculixShells, ADishBendsAboutItsStemAsAShell)
     for (const CalculixShell& of : kCalculixShells) {
         if (!of.name.ends_with("dish")) continue;
         const double felt = feltBy(Theory::shell, Edge::clamped, of) / of.stiffness - 1;
-        EXPECT_NEAR(felt, 0, 0.04) << of.name
-                                   << ": measured -2.8 and -0.3 %, and -4.0 and -2.9 where the stem stretched";
-        EXPECT_LT(feltBy(Theory::plate, Edge::clamped, of) / of.stiffness, 0.85)
-            << of.name << ": then nothing is shown";
+        const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
+        std::printf("  %s: %+.1f %%, flat %+.0f %%\n", std::string(of.name).c_str(), 100 * felt, 100 * flat);
+        EXPECT_NEAR(felt, 0, 0.03) << of.name;
+        EXPECT_LT(flat, -0.1) << of.name << ": then nothing is shown";
     }
 }
 

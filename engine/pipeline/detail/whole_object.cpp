@@ -19,14 +19,24 @@ namespace {
 /// The solver of shells converges up to 3e-3: dishes, lobes and gutters are 1 % too stiff by it.
 constexpr double kVoidOfPlates = 1e-4, kVoidOfShells = 3e-3;
 
-/// Beyond a free border no sheet carries a force: Airy's function is held at 0 there, by a bed of 25 C / cell^4 at
-/// nodes that are half covered, and of 270 at bare ones. A softer bed moves the border outwards: with 1 in place of
-/// 30, gutters that are held at one end are 7 to 11 % stiffer; 100 takes 2 % off, and takes more steps. With a
-/// membrane that merely gives way a thousand times as much there they were 24 to 53 % too stiff, because the void went
-/// on curving and resisted at a long lever. The curvature is not cut out: one that ends at a border along which it
-/// changes belongs to no surface, and such a sheet carries loads by stresses of its own (a gutter of 100 mm was felt
-/// five times too stiff).
-constexpr double kStressBed = 30, kLeastCovered = 0.1; // [1]
+/// A bed of a fourth-order operator of stiffness D that clamps a field on a border: 30 D / cell^4 ((2.7 - depth) / 3)^6
+/// at a depth of that many cells, so that it begins within the border. Clamped is a beam there to a hundredth of a
+/// cell, wherever the border lies between the nodes, and whether the bed grows on beyond it or not. A bed that begins
+/// on the border clamps it 0.3 to 1 cells further out, the more a node is by itself there, however firm it is.
+constexpr double kBed = 30, kBedWithin = 2.7, kBedWide = 3; // D / cell^4 [1]; [cells]
+
+/// Returns that bed.
+/// \param depth  within the border [cells]
+/// \param most   of the bed, 30 or more [D / cell^4]
+double bedAt(double depth, double most)
+{
+    return std::min(kBed * std::pow(std::max((kBedWithin - depth) / kBedWide, 0.0), 6), most);
+}
+
+double cellOf(const PlateGrid& grid)
+{
+    return std::max(grid.spacingX, grid.spacingZ);
+}
 
 double shareOf(double covered, double beyond)
 {
@@ -57,11 +67,13 @@ std::vector<bool> touchedPiece(const Patch& patch, const NodeField& load)
     return is;
 }
 
-/// Returns how firmly a node is held [1]; nodes lose their hold over half the points' blur.
-double holdOf(double held)
+/// Returns how deep a node lies in what is not held, in the widths of the Gaussian that made its share of what is: the
+/// inverse of that Gaussian's integral, to 2 %, up to five widths.
+double widthsFromHeld(double share)
 {
-    constexpr double kSharp = 2;
-    return std::clamp(0.5 + kSharp * (held - 0.5), 0.0, 1.0);
+    constexpr double kSlope = 1.702, kRest = 1e-4; // of the logistic curve; a share next to nothing [1]
+    const double     p = std::clamp(share, kRest, 1 - kRest);
+    return std::log((1 - p) / p) / kSlope;
 }
 
 /// Returns whether what is held surrounds a quarter and more of what is not, as far as sixteen directions tell: no
@@ -101,13 +113,20 @@ bool isHeld(const Patch& patch, std::size_t node)
 
 void cutOut(Patch& patch, double spacing, Theory theory)
 {
-    const auto touched = std::span(patch.positions).first(patch.touched);
-    patch.covered      = coveredShare(patch.window, touched, spacing);
-    patch.beyond       = theory == Theory::shell ? kVoidOfShells : kVoidOfPlates;
+    const auto       touched = std::span(patch.positions).first(patch.touched);
+    const PlateGrid& grid    = patch.window.grid;
+    patch.inside             = depthWithin(patch.window, touched, spacing, (kBedWithin + 1) * cellOf(grid));
+    patch.covered            = coveredShare(grid, patch.inside);
+    patch.beyond             = theory == Theory::shell ? kVoidOfShells : kVoidOfPlates;
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n)
         patch.plate.rigidity.values()[n] *= shareOf(patch.covered.values()[n], patch.beyond);
 }
 
+/// Beyond a free border no sheet carries a force: Airy's function is clamped to 0 there. By a bed that begins on the
+/// border, narrow curved bands were felt 5 to 19 % too stiff; with a membrane that merely gives way a thousand times as
+/// much, gutters 24 to 53 %, because the void went on curving and resisted at a long lever. The curvature is not cut
+/// out: one that ends at a border along which it changes belongs to no surface, and such a sheet carries loads by
+/// stresses of its own (a gutter of 100 mm was felt five times too stiff).
 void cutOutMembrane(Patch& patch)
 {
     constexpr double kFirm  = 1000; // over the sheet's stiffness: what a ring of held nodes gives way is below 1 % [1]
@@ -120,42 +139,43 @@ void cutOutMembrane(Patch& patch)
     // behind it. Elsewhere that ground has none to carry, and the solver converges faster on a bed.
     const bool bears = patch.spans = isSurrounded(patch) || pieces.count > 1;
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n) {
-        double&      compliance     = patch.membraneCompliance.values()[n];
-        const double held           = patch.held.values().empty() ? 0 : holdOf(patch.held.values()[n]);
-        patch.stressBed.values()[n] = (bears ? 1 - held : 1) * kStressBed * compliance / (area * area) *
-                                      (1 / shareOf(patch.covered.values()[n], kLeastCovered) - 1);
-        compliance /= 1 + (kFirm - 1) * held;
+        double&      compliance = patch.membraneCompliance.values()[n];
+        const double held       = patch.held.values().empty() ? 0 : patch.held.values()[n];
+        patch.stressBed.values()[n] =
+            (bears ? 1 - held : 1) * bedAt(patch.inside.values()[n] / cellOf(grid), kBed) * compliance / (area * area);
+        compliance *= 1 - held + held / kFirm;
     }
     patch.thrusts = thrustFields(patch, pieces);
 }
 
-void holdNodes(Patch& patch, const NodeField& held, double foundation, const NodeField& load)
+void holdNodes(Patch& patch, const NodeField& shares, double width, double foundation, const NodeField& load)
 {
-    constexpr double kFirm  = 1000; // D / cell^4 [1]
+    constexpr double kFirm  = 1000; // D / cell^4: a curved sheet is stiffer than its D [1]
     Plate&           plate  = patch.plate;
     const NodeField  sheet  = sheetRigidity(patch);
-    const double     cell   = std::max(plate.grid.spacingX, plate.grid.spacingZ);
+    const double     cell   = cellOf(plate.grid);
     const double     most   = extremesOf(sheet.values()).most;  // [N m]
     const double     firm   = kFirm * most / std::pow(cell, 4); // [Pa/m]
     const bool       varies = !plate.foundationShape.values().empty();
     const auto       piece  = touchedPiece(patch, load);
     NodeField        shape(plate.grid);
+    patch.held = NodeField(plate.grid);
     for (std::size_t n = 0; n < shape.values().size(); ++n) {
-        const double below = foundation * (varies ? plate.foundationShape.values()[n] : 1);
-        const double hold  = holdOf(held.values()[n]);
-        shape.values()[n]  = below / firm + hold * plate.rigidity.values()[n] / most;
-        patch.heldNodes += hold > 0.5 && piece[n];
+        const double below     = foundation * (varies ? plate.foundationShape.values()[n] : 1);
+        const double depth     = widthsFromHeld(shares.values()[n]) * width / cell; // [cells]
+        shape.values()[n]      = below / firm + bedAt(depth, kFirm) / kFirm * plate.rigidity.values()[n] / most;
+        patch.held.values()[n] = std::clamp(0.5 - depth, 0.0, 1.0);
+        patch.heldNodes += depth < 0 && piece[n];
     }
     plate.foundation      = firm;
     plate.foundationShape = std::move(shape);
-    patch.held            = held;
 }
 
-void findSheared(Patch& patch, const NodeField& held)
+void findSheared(Patch& patch)
 {
     constexpr int kAway  = 2; // cells
     const auto    isFree = [&](int i, int j) {
-        return patch.covered(i, j) > 0.999 && (held.values().empty() || held(i, j) < 1e-3);
+        return patch.covered(i, j) > 0.999 && (patch.held.values().empty() || patch.held(i, j) < 1e-3);
     };
     const PlateGrid& grid = patch.plate.grid;
     patch.sheared         = NodeField(grid);

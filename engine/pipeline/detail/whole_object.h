@@ -22,17 +22,17 @@ void cutOut(Patch& patch, double spacing, Theory theory);
 /// \pre its compliance is that of the sheet, also beyond its border
 void cutOutMembrane(Patch& patch);
 
-/// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are: with
-/// 1000 D / cell^4 a dent dies away within a fifth of a cell. Fills in patch.held and patch.heldNodes.
-/// \param held        share of each node that is held [1], see SoftObject::withHeld
+/// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are. What
+/// is free is clamped where half of it is held. Fills in patch.held and patch.heldNodes.
+/// \param shares      of each node that is held [1], see SoftObject::withHeld
+/// \param width       of the Gaussian that made these of the points' [m]
 /// \param foundation  of the scene [Pa/m]
 /// \param load        of the fingertip, on the sheet: only its piece counts in heldNodes
-void holdNodes(Patch& patch, const NodeField& held, double foundation, const NodeField& load);
+void holdNodes(Patch& patch, const NodeField& shares, double width, double foundation, const NodeField& load);
 
 /// Finds where the sheet bends freely: neither at its border, nor where it is held. The moments jump there, over one
 /// cell instead of none, and their slopes are no forces. Fills in patch.sheared.
-/// \param held  as holdNodes() has it; empty: nothing is
-void findSheared(Patch& patch, const NodeField& held);
+void findSheared(Patch& patch);
 
 /// Returns the rigidity of the sheet at a node [N m], also where cutOut() has taken it away.
 [[nodiscard]] double sheetRigidity(const Patch& patch, std::size_t node);

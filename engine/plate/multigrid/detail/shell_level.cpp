@@ -56,6 +56,16 @@ LevelMaps coarser(const LevelMaps& fine, const PlateLevel& from, const PlateLeve
             coarser(fine.curvatureXZ, from, to, Mean::arithmetic)};
 }
 
+/// Lets the bed of a coarser level be softer than the mean of the finer one's, by (h / H)^3: one that clamps phi along
+/// a border within some cells goes on doing so within some of the coarser cells. As firm as the finer one it clamps
+/// nodes of the sheet beside the border as well, and twice the steps are needed; by (h / H)^4 what lies in the void is
+/// corrected too far.
+void soften(std::vector<float>& bed, const PlateLevel& from, const PlateLevel& to)
+{
+    const double cells = double(from.cellsX) * from.cellsZ / (double(to.cellsX) * to.cellsZ); // (H / h)^2
+    for (float& value : bed) value *= float(1 / (cells * sqrt(cells)));
+}
+
 std::vector<float> scaled(const NodeField& field, double factor)
 {
     std::vector<float> result;
@@ -176,6 +186,7 @@ void makeLevels(const Shell& shell, const HostKernels& kernels, std::vector<Shel
     for (std::size_t n = 0; n < levels.size(); ++n) {
         const GridHierarchy::Level &ofW = bending.levels[n], &ofF = stress.levels[n];
         if (n > 0) maps = coarser(maps, bending.levels[n - 1].plate, ofW.plate);
+        if (n > 0) soften(maps.stressShape, levels[n - 1].bending, ofW.plate);
         ShellLevel&       level  = levels[n];
         const ShellLayout layout = layoutOf(ofW.plate);
         if (level.layout != layout) level = {};
