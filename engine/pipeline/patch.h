@@ -142,6 +142,7 @@ struct Patch {
         held{}; ///< share of each node that the scene holds, by a foundation and in the sheet's plane: from 0 to 1 over
                 ///< a cell [1]; empty: none
     std::size_t heldNodes = 0; ///< nodes that the scene holds, of the piece that is touched
+    double      apart     = 0; ///< share of the sheet in pieces that are not touched [1]
     NodeField   sheared{};     ///< see Shell, where the window spans the object
     /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.
     std::optional<LargeLaw> large;

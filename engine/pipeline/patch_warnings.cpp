@@ -258,6 +258,11 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
                          directionText(patch.chart.frame.normal) + "); set --from");
     if (const NodeField& held = patch.held; !held.values().empty() && held.values()[held.values().size() / 2] > 0.5)
         result.push_back("the object is held at this place, so that only the fingertip's contact gives way");
+    constexpr double kFewApart = 0.02; // of the sheet: strays and frayed borders [1]
+    if (patch.apart > kFewApart)
+        result.push_back(std::to_string(std::lround(100 * patch.apart)) +
+                         " % of the object are other pieces than the touched one, and are not felt: no points lie "
+                         "between them");
     addCurvature(result, patch, settings, material);
     constexpr double kElsewhere = 0.5,
                      kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5

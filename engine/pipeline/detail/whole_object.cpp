@@ -159,6 +159,7 @@ void holdNodes(Patch& patch, const NodeField& shares, double width, double found
     const bool       varies = !plate.foundationShape.values().empty();
     const auto       piece  = touchedPiece(patch, load);
     NodeField        shape(plate.grid);
+    double           all = 0, apart = 0; // nodes of the sheet
     patch.held = NodeField(plate.grid);
     for (std::size_t n = 0; n < shape.values().size(); ++n) {
         const double below     = foundation * (varies ? plate.foundationShape.values()[n] : 1);
@@ -166,7 +167,10 @@ void holdNodes(Patch& patch, const NodeField& shares, double width, double found
         shape.values()[n]      = below / firm + bedAt(depth, kFirm) / kFirm * plate.rigidity.values()[n] / most;
         patch.held.values()[n] = std::clamp(0.5 - depth, 0.0, 1.0);
         patch.heldNodes += depth < 0 && piece[n];
+        all += isOnSheet(patch, n);
+        apart += isOnSheet(patch, n) && !piece[n];
     }
+    patch.apart           = all > 0 ? apart / all : 0;
     plate.foundation      = firm;
     plate.foundationShape = std::move(shape);
 }

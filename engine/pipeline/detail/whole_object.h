@@ -23,7 +23,7 @@ void cutOut(Patch& patch, double spacing, Theory theory);
 void cutOutMembrane(Patch& patch);
 
 /// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are. What
-/// is free is clamped where half of it is held. Fills in patch.held and patch.heldNodes.
+/// is free is clamped where half of it is held. Fills in patch.held, patch.heldNodes and patch.apart.
 /// \param shares      of each node that is held [1], see SoftObject::withHeld
 /// \param width       of the Gaussian that made these of the points' [m]
 /// \param foundation  of the scene [Pa/m]
