@@ -19,12 +19,7 @@ layout(std430, binding = 2) readonly buffer Before { float x[]; };
 layout(std430, binding = 3) writeonly buffer After { float after[]; };
 #include "compute_shaders/shell_rows.glsl"
 #endif
-
-float inverseAt(int plane, int i, int j)
-{
-    ShellLayout l = push.fine;
-    return entries[((i + kShellRim) * kShellPlanes + plane) * 2 * l.span + placeOf(l, j)];
-}
+#include "compute_shaders/shell_relaxed.glsl"
 
 void main()
 {
@@ -33,17 +28,17 @@ void main()
     int  i = nodeX(), j = nodeZ(l), atW = placeIn(l, i, j, 0), atF = placeIn(l, i, j, 1);
     bool moves = ((i + j + push.colour) & 1) == 0;
 #ifdef PALPATE_FIRST
-    precise float w = b[atW], f = b[atF], wBefore = 0.0f, fBefore = 0.0f;
+    precise ShellNode left = ShellNode(b[atW], b[atF]), before = ShellNode(0.0f, 0.0f);
 #else
-    precise float wBefore = x[atW], fBefore = x[atF], w = 0.0f, f = 0.0f;
+    precise ShellNode before = ShellNode(x[atW], x[atF]), left = ShellNode(0.0f, 0.0f);
     if (moves) {
         ShellRow row = shellRow(l, i, j);
-        w            = b[atW] - row.w;
-        f            = b[atF] - row.f;
+        left.w       = b[atW] - row.w;
+        left.f       = b[atF] - row.f;
     }
 #endif
-    float ww = inverseAt(kInverseW, i, j), wf = inverseAt(kInverseWF, i, j), ff = inverseAt(kInverseF, i, j);
-    precise float wAfter = wBefore + (ww * w + wf * f), fAfter = fBefore + (wf * w + ff * f);
-    after[atW] = moves ? wAfter : wBefore;
-    after[atF] = moves ? fAfter : fBefore;
+    ShellNode now = before;
+    if (moves) now = relaxed(l, i, j, before, left);
+    after[atW] = now.w;
+    after[atF] = now.f;
 }

@@ -215,6 +215,42 @@ TEST_F(ShellKernelsTest, Transfers)
     expectSame(put, expectedPut, 10);
 }
 
+/// A small level in one dispatch each way does what all its passes do.
+TEST_F(ShellKernelsTest, ALevelInOneDispatch)
+{
+    const ShellLayout &f = fine().layout, &c = coarse().layout;
+    const auto&        t       = fine().tables;
+    const auto&        entries = fine().entries;
+    const auto         b = rough<float>(f, 11), e = rough<float>(c, 12), guess = rough<float>(f, 13);
+    auto               up = guess, expectedUp = guess;
+    std::vector<float> x(b.size()), expectedX(b.size()), left(b.size()), turned(b.size()), below(e.size()),
+        expectedBelow(e.size());
+    eachLoad([&](std::size_t n) {
+        const std::size_t atF = n * numbersOf(f), atC = n * numbersOf(c);
+        const ShellPush   push{.layout = f, .coarse = c};
+        callHost(host_.kernels->shellSmooth, ShellPush{.layout = f, .halfSweeps = 4, .fromZero = true},
+                 {entries.data(), &b[atF], &expectedX[atF], nullptr});
+        std::vector<float> rest(numbersOf(f));
+        callHost(host_.kernels->shellResidual, ShellPush{.layout = f},
+                 {entries.data(), &b[atF], &expectedX[atF], rest.data()});
+        callHost(host_.kernels->shellRestrict, push,
+                 {t[0].data(), t[1].data(), t[2].data(), t[3].data(), rest.data(), &expectedBelow[atC]});
+        callHost(host_.kernels->shellProlong, push,
+                 {t[0].data(), t[1].data(), t[2].data(), t[3].data(), &e[atC], &expectedUp[atF]});
+        callHost(host_.kernels->shellSmooth, ShellPush{.layout = f, .colour = 1, .halfSweeps = 4},
+                 {entries.data(), &b[atF], &expectedUp[atF], nullptr});
+    });
+    const shared::ShellPassPush push{f, c, 0, 0};
+    dispatchOnce(k().down,
+                 {in(entries), in(b), in(t[0]), in(t[1]), in(t[2]), in(t[3]), inOut(x), inOut(left), inOut(below)},
+                 push, {1, 1, kLoads});
+    dispatchOnce(k().up, {in(entries), in(b), in(t[0]), in(t[1]), in(t[2]), in(t[3]), inOut(up), inOut(turned), in(e)},
+                 push, {1, 1, kLoads});
+    expectSame(x, onNodes(f, expectedX), 1e3);
+    expectSame(below, expectedBelow, 1e3);
+    expectSame(up, onNodes(f, expectedUp), 1e3);
+}
+
 TEST_F(ShellKernelsTest, CoarsestLevel)
 {
     const ShellLayout& l = levels_.back().layout;

@@ -22,19 +22,29 @@ namespace {
 
 /// Shapes of workgroups by their names in shell_passes.def, as those of plates are.
 struct Shapes {
-    compute::Workgroup tile, line, alone, reduce, row;
+    compute::Workgroup tile, line, alone, reduce, row, level;
 };
+
+constexpr std::uint32_t kMostOfLevel = 512; // invocations over a small level: a node of it each, or two
+/// Nodes of a level that one workgroup takes for each load, with less waiting than a dispatch for each pass has.
+constexpr std::size_t kFewNodes = 33 * 33;
 
 Shapes shapesFor(const compute::Context& context)
 {
     if (context.processor().kind == compute::ProcessorKind::software)
-        return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, {8, 1, 1}};
-    return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, {64, 1, 1}};
+        return {{8, 8, 1}, {128, 1, 1}, {8, 1, 1}, {64, 1, 1}, {8, 1, 1}, {8, 1, 1}};
+    const std::uint32_t most = std::min(std::uint32_t(context.limits().invocations), kMostOfLevel);
+    return {{32, 4, 1}, {128, 1, 1}, {64, 1, 1}, {256, 1, 1}, {64, 1, 1}, {most, 1, 1}};
 }
 
 ShellPassPush passOf(const ShellLayout& layout)
 {
     return {layout, {}, 0, 0};
+}
+
+bool isSmall(const ShellLayout& layout)
+{
+    return std::size_t(layout.cellsX + 1) * std::size_t(layout.cellsZ + 1) <= kFewNodes;
 }
 
 ShellPassPush transferBetween(const ShellLayout& fine, const ShellLayout& coarse, bool fromZero)
@@ -254,12 +264,25 @@ void ProcessorShellFields::cycle(CommandList& list, std::size_t level, const Buf
 {
     const Level& at = levels_[level];
     if (level + 1 == levels_.size()) return solveCoarsest(list, b, at.x);
+    if (isSmall(at.layout)) return smallCycle(list, level, b);
     relax(list, level, b, 0, true);
     nodes(list, k.residual, {at.entries, at.x, at.r, b}, level, passOf(at.layout));
     restrictTo(list, level, at.r, levels_[level + 1].b);
     cycle(list, level + 1, levels_[level + 1].b);
     prolongFrom(list, level, levels_[level + 1].x, at.x, false);
     relax(list, level, b, 1, false);
+}
+
+/// The same where one workgroup takes all of a level.
+void ProcessorShellFields::smallCycle(CommandList& list, std::size_t level, const Buffer& b) const
+{
+    const Level &       at = levels_[level], &below = levels_[level + 1];
+    const auto&         t    = at.tables;
+    const ShellPassPush push = transferBetween(at.layout, below.layout, false);
+    const auto          each = std::uint32_t(loads_);
+    list.dispatch(k.down, {at.entries, b, t[0], t[1], t[2], t[3], at.x, at.r, below.b}, push, {1, 1, each});
+    cycle(list, level + 1, below.b);
+    list.dispatch(k.up, {at.entries, b, t[0], t[1], t[2], t[3], at.x, at.before, below.x}, push, {1, 1, each});
 }
 
 void ProcessorShellFields::restrictTo(CommandList& list, std::size_t fine, const Buffer& from, const Buffer& to) const

@@ -95,6 +95,7 @@ private:
     void relax(compute::CommandList& list, std::size_t level, const compute::Buffer& b, int firstColour,
                bool fromZero) const;
     void cycle(compute::CommandList& list, std::size_t level, const compute::Buffer& b) const;
+    void smallCycle(compute::CommandList& list, std::size_t level, const compute::Buffer& b) const;
     void restrictTo(compute::CommandList& list, std::size_t fine, const compute::Buffer& from,
                     const compute::Buffer& to) const;
     void prolongFrom(compute::CommandList& list, std::size_t fine, const compute::Buffer& from,
