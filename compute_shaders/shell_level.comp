@@ -1,5 +1,5 @@
-// shell_level.comp - a small level of a shell's cycle in one dispatch: with PALPATE_DOWN two sweeps from nothing and the
-//                    restriction of what is left; else what the coarser level found and two sweeps more.
+// shell_level.comp - a small level of a shell's cycle in one dispatch. With PALPATE_DOWN: two sweeps from nothing, and
+//                    the restriction of what is left; else what the coarser level found, and two sweeps more.
 // Domain     one workgroup per load, whose invocations take turns over the nodes
 // Reads      coefficients, right side, tables of both fields (shared/transfer_layout.h), else the coarser level's fields
 // Writes     fields; what is left and the coarser level's right side, or a half sweep's nodes until they are taken

@@ -1,6 +1,5 @@
 // shell_relax.comp - one half sweep of relaxation of both fields of a shell: the nodes of one colour change, from what
-// all
-//                    nodes were before.
+//                    all nodes were before.
 // Domain     x: places of a row; y: rows; z: loads
 // Reads      coefficients, right side, the fields before (not with PALPATE_FIRST, where they are 0)
 // Writes     the fields, of all nodes

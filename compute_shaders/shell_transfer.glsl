@@ -13,7 +13,8 @@ float alongZ(int field, int n) { return field == 0 ? tableZW[n] : tableZF[n]; }
 // At a coarse node.
 float restrictedAt(ShellLayout fine, int i, int j, int field)
 {
-    int   atX = kFineStride * (fine.cellsX + 1) + kCoarseStride * i, atZ = kFineStride * (fine.cellsZ + 1) + kCoarseStride * j;
+    int   atX    = kFineStride * (fine.cellsX + 1) + kCoarseStride * i;
+    int   atZ    = kFineStride * (fine.cellsZ + 1) + kCoarseStride * j;
     int   firstX = int(alongX(field, atX)), firstZ = int(alongZ(field, atZ));
     float sum = 0.0f;
     for (int n = 0; n < kCoarseWeights; ++n) {
