@@ -6,6 +6,24 @@
 #include "engine/plate/shell_energy.h"
 
 namespace palp {
+namespace {
+
+void takeOff(NodeField& from, const NodeField& what)
+{
+    for (std::size_t n = 0; n < from.values().size(); ++n) from.values()[n] -= what.values()[n];
+}
+
+} // namespace
+
+ShellLoad leftOf(const Shell& shell, const ShellLoad& load, const NodeField& w, const NodeField& phi)
+{
+    const Plate membrane = membraneOf(shell);
+    ShellLoad   left{energyResidual(shell.bending, load.onW, w), load.onPhi};
+    takeOff(left.onW, couplingForces(shell, phi));
+    takeOff(left.onPhi, couplingLoad(shell, w));
+    takeOff(left.onPhi, energyResidual(membrane, NodeField(membrane.grid), phi)); // + C phi
+    return left;
+}
 
 Thrusts::Thrusts(const Shell& shell)
 {

@@ -14,6 +14,9 @@ struct ShellLoad {
     NodeField onPhi; ///< of Airy's function [1]
 };
 
+/// Returns what a deflection [m] and a stress function [N m] leave of a load, f - K x; on held nodes the reaction.
+[[nodiscard]] ShellLoad leftOf(const Shell& shell, const ShellLoad& load, const NodeField& w, const NodeField& phi);
+
 /// The fields of thrust of a shell, without the numbers y [N m] that go with them: with K its matrix for w and psi,
 /// and f the forces,
 ///

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
+#include "engine/plate/plate_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "tests/plate/shells.h"
@@ -116,6 +117,41 @@ TEST(MultigridShellSolver, SolvesForLoadsOnBothFields)
         const double here  = dot(of.onW, pressed.deflection) + dot(of.onPhi, pressed.stressFunction);
         EXPECT_NEAR(there / here, 1, 1e-5) << "floats of the levels";
     }
+}
+
+/// Beds that are far firmer than the sheet make the solver slow.
+TEST(MultigridShellSolver, AnArchIsOneHoweverFirmTheBedAlongTheSides)
+{
+    for (const double firm : {1.0, 1e3, 1e4, 1e6}) {
+        Shell shell = stripOf(shellOf(square(64), even(), constant(1, 1, 0), 25, Edge::clamped));
+        for (int i = 0; i <= 64; ++i)
+            for (int j = 0; j <= 64; ++j)
+                if (std::min({i, j, 64 - i, 64 - j}) < 2) shell.stressBed(i, j) *= firm;
+        const Footprint finger(fingertip(square(64), 3e-3, -2e-3));
+        PlateSolver     host("host"), reference("reference");
+        const auto      workBy = [&](PlateSolver& by) {
+            return by.solveFootprints(shell, {&finger, 1}, 0, 1e-4, 1e-4).responses.front().work;
+        };
+        EXPECT_NEAR(workBy(host) / workBy(reference), 1, 2e-3) << firm << ": thrust takes most off a work of 1e-4";
+    }
+}
+
+TEST(Thrusts, WhatAnAnswerLeavesOfALoadIsNothingOfTheExactOneAndAHalfOfHalfOfIt)
+{
+    Shell           shell = shellOf(square(32), wart(10), constant(1, 0.5, 0.3), 8);
+    const NodeField force = fingertip(square(32), 3e-3, -2e-3);
+    const auto      exact = ReferenceShellSolver(shell).solve(force);
+    const ShellLoad load{force, NodeField(shell.bending.grid)};
+    const auto      workLeft = [&](double share) { // along the exact answer
+        NodeField w = exact.deflection, phi = exact.stressFunction;
+        for (NodeField* field : {&w, &phi})
+            for (double& value : field->values()) value *= share;
+        const ShellLoad left = leftOf(shell, load, w, phi);
+        return dot(left.onW, exact.deflection) + dot(left.onPhi, exact.stressFunction);
+    };
+    const double work = dot(force, exact.deflection);
+    EXPECT_NEAR(workLeft(1) / work, 0, 1e-8);
+    EXPECT_NEAR(workLeft(0.5) / work, 0.5, 1e-8);
 }
 
 /// Returns how many steps the compliance takes to be right to a share.
