@@ -5,8 +5,7 @@
 
 namespace palp {
 
-/// Returns how deep the nodes lie within the border of a sheet [m]: up to `deepest`, and below 0 beyond the border, up
-/// to some cells.
+/// Returns how deep the nodes lie within the border of a sheet [m]: up to `deepest`, and below 0 beyond the border.
 ///
 /// The border is that of the points' closing: the sheet is what no disc can reach that holds no point. The disc's
 /// radius is 2.5 spacings, of the points or half of the nodes', whichever is larger, so that neither the gaps between
@@ -22,7 +21,7 @@ namespace palp {
 
 /// Returns the share of the sheet at the nodes [1]: 1 inside, 0 outside, and between them over one cell, half of it on
 /// the border.
-/// \param depth  of depthWithin(), from a cell and more
+/// \param depth  of depthWithin(), with a cell and more as the deepest
 [[nodiscard]] NodeField coveredShare(const PlateGrid& grid, const NodeField& depth);
 
 } // namespace palp

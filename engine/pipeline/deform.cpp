@@ -238,18 +238,20 @@ double offSphere(const Patch& patch, const TouchedSurface& surface, const PatchS
 {
     const double misfit = patch.sphere.fit.misfit, noise = patch.noise;
     if (settings.windowOf == WindowOf::object) {
-        constexpr double kWeight = 2.5, kOfNoise = 0.1; // of normals that noise tilts, twice what is expected [1]
-        const double     rough   = noise / patch.spacing;
-        const auto       shorter = [](double cosine) { return std::max(0.0, 1 - std::abs(cosine)); };
-        const double     slopes  = meanAgainstSphere(patch, surface, settings, shorter) - kOfNoise * rough * rough;
+        constexpr double kWeight = 2.5;
+        constexpr double kOfNoise =
+            0.1; // of (noise / spacing)^2: by so much noise shortens a normal's share, or less [1]
+        const double rough   = noise / patch.spacing;
+        const auto   shorter = [](double cosine) { return std::max(0.0, 1 - std::abs(cosine)); };
+        const double slopes  = meanAgainstSphere(patch, surface, settings, shorter) - kOfNoise * rough * rough;
         return kWeight * std::sqrt(std::max(0.0, slopes) / 8);
     }
     return std::sqrt(std::max(0.0, misfit * misfit - noise * noise)) / settings.window;
 }
 
 /// Returns the share of the exponential map in the positions: none where the sphere follows the surface, all of it on
-/// fingers, edges and folds, and in between a blend, so that no step is felt where one gives way to the other. Lengths
-/// are shorter by 0.3 % at the first bound of offSphere(), and by 2 % at the second.
+/// fingers, edges and folds, and in between a blend, so that no step is felt where one gives way to the other. In a
+/// window lengths are shorter by 0.3 % at the first bound of offSphere(), and by 2 % at the second.
 ///
 /// Where a part of the window stands against the sphere by some 50 degrees, as behind a sharp rim, the misfit need not
 /// be large: then that part decides, before it comes to lie over the rest.
@@ -537,7 +539,10 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     auto next = resampled.begin() + 1;
     if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
     patch.below = meanFoundation(patch.plate);
-    if (settings.windowOf == WindowOf::object) cutOut(patch, sparsest, settings.theory);
+    if (settings.windowOf == WindowOf::object) {
+        cutOut(patch, sparsest, settings.theory);
+        findApart(patch, unitLoad(patch, settings));
+    }
     if (!object.held().empty()) {
         NodeField held = std::move((next++)->rigidity);
         for (double& share : held.values()) share = std::log(share);

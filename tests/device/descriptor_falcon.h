@@ -55,7 +55,7 @@ private:
 class DescriptorLink final : public FalconLink {
 public:
     /// \param hangs   writing waits while it is true; may be null
-    /// \param pushes  becomes whether the driver's last packet does; may be null
+    /// \param pushes  becomes whether the driver's last packet carries a force; may be null
     explicit DescriptorLink(int fd, const std::atomic<bool>* hangs = nullptr, std::atomic<bool>* pushes = nullptr)
         : fd_(fd), hangs_(hangs), pushes_(pushes), guardian_({.fd = fd}, kFalconZero, "the Falcon of this test")
     {

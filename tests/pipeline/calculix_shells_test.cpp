@@ -344,7 +344,8 @@ TEST(CalculixShells, WhatHasBordersOfItsOwnBendsAboutWhatHoldsIt)
         if (kindOf(of.name) != Kind::whole || of.name.ends_with("dish") || isBetween(of.name)) continue;
         const double felt = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
         std::printf("  %s, %g mm: %+.1f %%\n", std::string(of.name).c_str(), 1e3 * of.thickness, 100 * felt);
-        EXPECT_LT(std::abs(felt), 0.03) << of.name << ", " << of.thickness << " m";
+        EXPECT_LT(std::abs(felt), 0.05) << "a plate has no shear, of which the disc on its stem has most: " << of.name
+                                        << ", " << of.thickness << " m";
     }
 }
 
@@ -355,7 +356,7 @@ TEST(CalculixShells, WhatSpansFromSupportToSupportThrusts)
         if (!isBetween(of.name)) continue;
         const double felt = feltBy(Theory::shell, Edge::clamped, of) / of.stiffness - 1;
         std::printf("  %s: %+.1f %%\n", std::string(of.name).c_str(), 100 * felt);
-        EXPECT_NEAR(felt, 0, 0.03) << of.name;
+        EXPECT_NEAR(felt, 0, 0.02) << of.name;
     }
 }
 

@@ -68,12 +68,16 @@ std::vector<bool> touchedPiece(const Patch& patch, const NodeField& load)
 }
 
 /// Returns how deep a node lies in what is not held, in the widths of the Gaussian that made its share of what is: the
-/// inverse of that Gaussian's integral, to 2 %, up to five widths.
+/// inverse of that Gaussian's integral, to 5e-4. Beyond 3.7 widths it is infinite.
+/// \source Abramowitz and Stegun 1964, 26.2.23
 double widthsFromHeld(double share)
 {
-    constexpr double kSlope = 1.702, kRest = 1e-4; // of the logistic curve; a share next to nothing [1]
-    const double     p = std::clamp(share, kRest, 1 - kRest);
-    return std::log((1 - p) / p) / kSlope;
+    constexpr double kRest = 1e-4; // a share next to nothing [1]
+    const double     least = std::min(share, 1 - share), side = share < 0.5 ? 1 : -1;
+    if (!(least > kRest)) return side * std::numeric_limits<double>::infinity();
+    const double t = std::sqrt(-2 * std::log(least));
+    return side *
+           (t - (2.515517 + t * (0.802853 + t * 0.010328)) / (1 + t * (1.432788 + t * (0.189269 + t * 0.001308))));
 }
 
 /// Returns whether what is held surrounds a quarter and more of what is not, as far as sixteen directions tell: no
@@ -159,7 +163,6 @@ void holdNodes(Patch& patch, const NodeField& shares, double width, double found
     const bool       varies = !plate.foundationShape.values().empty();
     const auto       piece  = touchedPiece(patch, load);
     NodeField        shape(plate.grid);
-    double           all = 0, apart = 0; // nodes of the sheet
     patch.held = NodeField(plate.grid);
     for (std::size_t n = 0; n < shape.values().size(); ++n) {
         const double below     = foundation * (varies ? plate.foundationShape.values()[n] : 1);
@@ -167,12 +170,20 @@ void holdNodes(Patch& patch, const NodeField& shares, double width, double found
         shape.values()[n]      = below / firm + bedAt(depth, kFirm) / kFirm * plate.rigidity.values()[n] / most;
         patch.held.values()[n] = std::clamp(0.5 - depth, 0.0, 1.0);
         patch.heldNodes += depth < 0 && piece[n];
+    }
+    plate.foundation      = firm;
+    plate.foundationShape = std::move(shape);
+}
+
+void findApart(Patch& patch, const NodeField& load)
+{
+    const auto piece = touchedPiece(patch, load);
+    double     all = 0, apart = 0; // nodes of the sheet
+    for (std::size_t n = 0; n < piece.size(); ++n) {
         all += isOnSheet(patch, n);
         apart += isOnSheet(patch, n) && !piece[n];
     }
-    patch.apart           = all > 0 ? apart / all : 0;
-    plate.foundation      = firm;
-    plate.foundationShape = std::move(shape);
+    patch.apart = all > 0 ? apart / all : 0;
 }
 
 void findSheared(Patch& patch)

@@ -23,12 +23,15 @@ void cutOut(Patch& patch, double spacing, Theory theory);
 void cutOutMembrane(Patch& patch);
 
 /// Lets those nodes of a patch's plate that are held stand on a foundation so firm that they stay where they are. What
-/// is free is clamped where half of it is held. Fills in patch.held, patch.heldNodes and patch.apart.
+/// is free is clamped where half of it is held. Fills in patch.held and patch.heldNodes.
 /// \param shares      of each node that is held [1], see SoftObject::withHeld
 /// \param width       of the Gaussian that made these of the points' [m]
 /// \param foundation  of the scene [Pa/m]
 /// \param load        of the fingertip, on the sheet: only its piece counts in heldNodes
 void holdNodes(Patch& patch, const NodeField& shares, double width, double foundation, const NodeField& load);
+
+/// Finds how much of the sheet is in pieces that the fingertip's load does not touch. Fills in patch.apart.
+void findApart(Patch& patch, const NodeField& load);
 
 /// Finds where the sheet bends freely: neither at its border, nor where it is held. The moments jump there, over one
 /// cell instead of none, and their slopes are no forces. Fills in patch.sheared.

@@ -25,7 +25,7 @@ struct Shapes {
     compute::Workgroup tile, line, alone, reduce, row, level;
 };
 
-constexpr std::uint32_t kMostOfLevel = 512; // invocations over a small level: a node of it each, or two
+constexpr std::uint32_t kMostOfLevel = 512; // invocations over a small level: up to three nodes each
 /// Nodes of a level that one workgroup takes for each load, with less waiting than a dispatch for each pass has.
 constexpr std::size_t kFewNodes = 33 * 33;
 
