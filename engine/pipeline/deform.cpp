@@ -540,7 +540,7 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
     patch.below = meanFoundation(patch.plate);
     if (settings.windowOf == WindowOf::object) {
-        cutOut(patch, sparsest, settings.theory);
+        cutOut(patch, sparsest, settings.large);
         findApart(patch, unitLoad(patch, settings));
     }
     if (!object.held().empty()) {

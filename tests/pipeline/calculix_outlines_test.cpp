@@ -67,7 +67,8 @@ Outline outlineOf(std::string_view name)
 }
 
 /// Points half a millimetre apart, each anywhere in its square.
-SoftObject objectOf(const Outline& outline, unsigned seed)
+/// \param bend  [1/m]
+SoftObject objectOf(const Outline& outline, unsigned seed, double bend = 10)
 {
     constexpr double                       kSpacing = 0.5e-3, kReach = 62e-3; // [m]
     std::mt19937_64                        bits(seed);
@@ -78,7 +79,7 @@ SoftObject objectOf(const Outline& outline, unsigned seed)
         for (double j = -kReach; j < kReach; j += kSpacing) {
             const double x = i + within(bits), z = j + within(bits);
             if (!isInOne(outline.pieces, x, z) || isInOne(outline.holes, x, z)) continue;
-            points.emplace_back(x, z, -5 * (x * x + (outline.isVault ? 0 : z * z)));
+            points.emplace_back(x, z, -bend / 2 * (x * x + (outline.isVault ? 0 : z * z)));
             held.push_back(isInOne(outline.held, x, z));
         }
     std::vector<double> moduli(points.size(), 1e6);
@@ -99,14 +100,31 @@ TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
             settings.windowOf = WindowOf::object;
             settings.cells    = cells;
             const Patch patch = deform(objectOf(outlineOf(of.name), 1), {{0, 0, 0}, {0, 0, 1}}, settings, host);
-            EXPECT_EQ(patch.report.solver, "host");
+            EXPECT_TRUE(patch.report.converged);
             const double felt = 1 / (patch.compliance * of.stiffness) - 1;
-            std::printf("  %s, %d cells: %+.1f %%, %d steps\n", std::string(of.name).c_str(), cells, 100 * felt,
-                        patch.report.iterations.value_or(0));
+            std::printf("  %s, %d cells: %+.1f %%, %s\n", std::string(of.name).c_str(), cells, 100 * felt,
+                        patch.report.solver.c_str());
             EXPECT_LT(of.meshError, 0.01) << of.name;
             EXPECT_NEAR(felt, 0, 0.05) << of.name << ", " << cells << " cells";
-            EXPECT_LT(patch.report.iterations.value_or(0), 80) << "with a bed on coarser levels that is as firm: more";
         }
+}
+
+/// A hairpin of two arms 8 mm apart, one held at its end, the other touched near its own: what lies between them must
+/// not bridge the gap. With 3e-3 of the sheet's rigidity there it was felt 17 times too stiff.
+TEST(CalculixOutlines, AGapIsNotBridged)
+{
+    const Outline hairpin{
+        {box(-10e-3, -10e-3, 10e-3, -2e-3), box(-10e-3, -10e-3, -4e-3, 40e-3), box(4e-3, -10e-3, 10e-3, 40e-3)},
+        {box(-12e-3, 32e-3, -2e-3, 42e-3)}};
+    constexpr double kHairpin = 0.0411; // [N/m] CalculiX, bricks of 1 mm: right to 0.5 %
+    for (const Theory theory : {Theory::plate, Theory::shell}) {
+        PatchSettings settings{.theory = theory};
+        settings.windowOf = WindowOf::object;
+        PlateSolver host("host");
+        const Patch patch = deform(objectOf(hairpin, 1, 0), {{7e-3, 30e-3, 0}, {0, 0, 1}}, settings, host);
+        std::printf("  hairpin: %+.1f %%\n", 100 / (patch.compliance * kHairpin) - 100);
+        EXPECT_NEAR(1 / (patch.compliance * kHairpin), 1, 0.2);
+    }
 }
 
 } // namespace

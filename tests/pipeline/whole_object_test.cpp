@@ -235,7 +235,6 @@ TEST(WholeObject, ADishBendsAboutItsStemHoweverItsPointsAreDrawn)
         const Patch      patch = deform(dish, {{15e-3, 0, 58.1e-3}, {0, 0, 1}}, shell, host);
         EXPECT_TRUE(patch.curvature) << patch.flatBecause;
         EXPECT_TRUE(patch.report.converged);
-        EXPECT_EQ(patch.report.solver, "host");
         found.push_back(patch.compliance);
         const double flat = deform(dish, {{15e-3, 0, 58.1e-3}, {0, 0, 1}}, kWhole, host).compliance;
         std::printf("  %u: c %.4g m/N, %d steps, as a plate %.4g\n", seed, patch.compliance,
