@@ -16,8 +16,8 @@
 namespace palp {
 namespace {
 
-constexpr int kLattice = 17; ///< places along a side of the window: 2.5 mm apart in 40 mm, less than half of any radius
-constexpr int kSurvey  = 9;  ///< the same for those from which the radius follows
+constexpr int kLattice = 17, kMostLattice = 97; ///< places along a side of the window, least and most; see sideFor()
+constexpr int kSurvey = 9;                      ///< the same for those from which the radius follows
 
 constexpr double kLeastSpacings = 5;     ///< radius of a fit, at least [spacings]: some 80 points
 constexpr double kSurveyError   = 1.2;   ///< that of the survey [1/m]: a twentieth of what a fingertip's surface has
@@ -289,6 +289,16 @@ Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const
     return lattice;
 }
 
+/// Returns how many places of a lattice lie along a side of the window: 2.5 mm apart in 40 mm. Where that is farther
+/// than the radius of the fits, as of an object that the window spans, half of it: in a window of 200 mm lumps of 6 mm
+/// were smeared, and felt 6 to 43 % too stiff as the object was turned.
+int sideFor(const PatchWindow& window, double radius)
+{
+    const double size = std::max(window.grid.sizeX(), window.grid.sizeZ());
+    if (size <= (kLattice - 1) * radius) return kLattice;
+    return std::min(int(std::ceil(2 * size / radius)) + 1, kMostLattice);
+}
+
 constexpr double kRung = 1e-3, kRungs = 1.3; ///< the first radius [m]; their ratio [1]
 
 /// Finds the curvature with fits of a radius, between those of two rungs; empty where there are none.
@@ -381,18 +391,19 @@ Along alongAt(double t, int side)
     return result;
 }
 
-CurvatureField interpolated(const PatchWindow& window, const std::vector<ChartTensor>& lattice)
+CurvatureField interpolated(const PatchWindow& window, const std::vector<ChartTensor>& lattice, int side)
 {
     CurvatureField field{NodeField(window.grid), NodeField(window.grid), NodeField(window.grid)};
     const int      cellsX = window.grid.cellsX, cellsZ = window.grid.cellsZ;
     for (int i = 0; i <= cellsX; ++i)
         for (int j = 0; j <= cellsZ; ++j) {
-            const Along x = alongAt(double(i) * (kLattice - 1) / cellsX, kLattice);
-            const Along z = alongAt(double(j) * (kLattice - 1) / cellsZ, kLattice);
+            const Along x = alongAt(double(i) * (side - 1) / cellsX, side);
+            const Along z = alongAt(double(j) * (side - 1) / cellsZ, side);
             for (std::size_t m = 0; m < 4; ++m)
                 for (std::size_t n = 0; n < 4; ++n) {
                     const double       weight = x.weights[m] * z.weights[n];
-                    const ChartTensor& here = lattice[(std::size_t(x.first) + m) * kLattice + std::size_t(z.first) + n];
+                    const std::size_t  row    = (std::size_t(x.first) + m) * std::size_t(side);
+                    const ChartTensor& here   = lattice[row + std::size_t(z.first) + n];
                     field.x(i, j) += weight * here.x;
                     field.z(i, j) += weight * here.z;
                     field.xz(i, j) += weight * here.xz;
@@ -449,10 +460,11 @@ std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Fr
     // Of what is hardly curved fits would be as wide as may be, and wider than a narrow object, which then decides
     // nothing.
     for (double radius = *wanted;; radius /= 2) {
-        const Lattice lattice = latticeBetween(window, kLattice, frame, sites, radius, settings);
+        const int     side    = sideFor(window, radius);
+        const Lattice lattice = latticeBetween(window, side, frame, sites, radius, settings);
         if (lattice.empty() && radius > kLeastSpacings * settings.spacing) continue;
         if (lattice.empty()) return {};
-        CurvatureField field = interpolated(window, lattice);
+        CurvatureField field = interpolated(window, lattice, side);
         field.radius         = radius;
         return field;
     }

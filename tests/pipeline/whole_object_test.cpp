@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <random>
 #include <string>
 
@@ -490,6 +491,30 @@ TEST(WholeObject, APanelIsAsSoftWhereItsPointsAreNoisy)
     EXPECT_LT(felt.back(), 1.25) << "of one in thirty a curvature that noise made is left: 22 % here";
 }
 
+/// A dome of radius 100 mm with a lump 6 mm wide, held all around, and the same turned about its axis. The window is
+/// wider then, and with places of curvature a sixteenth of it apart the lump was felt 40 % stiffer.
+TEST(WholeObject, ALumpIsFeltAlikeHoweverTheObjectIsTurned)
+{
+    PatchSettings settings = kWhole;
+    settings.theory        = Theory::shell;
+    std::vector<double> felt;
+    for (const double turn : {0.0, std::numbers::pi / 4}) {
+        std::vector<glm::dvec3> points;
+        std::vector<double>     shares;
+        for (double x = -35e-3; x < 35e-3; x += 0.6e-3)
+            for (double y = -30e-3; y < 30e-3; y += 0.6e-3) {
+                const double r2 = x * x + y * y, z = 1e-3 * std::exp(-r2 / (2 * 6e-3 * 6e-3)) - 5 * r2;
+                points.emplace_back(x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn),
+                                    z);
+                shares.push_back(std::abs(x) > 30e-3 || std::abs(y) > 25e-3);
+            }
+        const auto  dome = objectOf(std::move(points), std::move(shares), kSheet);
+        PlateSolver host("host");
+        felt.push_back(deform(dome, {{0, 0, 1e-3}, {0, 0, 1}}, settings, host).feltStiffness);
+    }
+    EXPECT_NEAR(felt[1] / felt[0], 1, 0.03);
+}
+
 TEST(WholeObject, ALongArchIsOneHoweverNarrow)
 {
     PatchSettings settings = kWhole;
@@ -600,8 +625,7 @@ TEST(WholeObject, ADomeThatIsHeldAtItsRimIsHeldInItsPlaneToo)
             SoftObject(PointCloud(std::move(points), std::vector<double>(kCount, 1e6), StiffnessKind::modulus),
                        material)
                 .withHeld(std::move(shares));
-        EXPECT_NEAR(touched(dome, 0, 0, settings).feltStiffness / truth, 1, 0.02)
-            << radius << " m";
+        EXPECT_NEAR(touched(dome, 0, 0, settings).feltStiffness / truth, 1, 0.02) << radius << " m";
     }
 }
 
