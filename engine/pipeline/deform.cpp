@@ -238,12 +238,11 @@ double offSphere(const Patch& patch, const TouchedSurface& surface, const PatchS
 {
     const double misfit = patch.sphere.fit.misfit, noise = patch.noise;
     if (settings.windowOf == WindowOf::object) {
-        constexpr double kWeight = 2.5;
-        constexpr double kOfNoise =
-            0.1; // of (noise / spacing)^2: by so much noise shortens a normal's share, or less [1]
-        const double rough   = noise / patch.spacing;
-        const auto   shorter = [](double cosine) { return std::max(0.0, 1 - std::abs(cosine)); };
-        const double slopes  = meanAgainstSphere(patch, surface, settings, shorter) - kOfNoise * rough * rough;
+        constexpr double kWeight  = 2.5;
+        constexpr double kOfNoise = 0.1; // noise tilts normals by (noise / spacing)^2 / 20, and so is taken off [1]
+        const double     rough    = noise / patch.spacing;
+        const auto       shorter  = [](double cosine) { return std::max(0.0, 1 - std::abs(cosine)); };
+        const double     slopes   = meanAgainstSphere(patch, surface, settings, shorter) - kOfNoise * rough * rough;
         return kWeight * std::sqrt(std::max(0.0, slopes) / 8);
     }
     return std::sqrt(std::max(0.0, misfit * misfit - noise * noise)) / settings.window;
@@ -540,7 +539,7 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
     patch.below = meanFoundation(patch.plate);
     if (settings.windowOf == WindowOf::object) {
-        cutOut(patch, sparsest, settings.large);
+        cutOut(patch, sparsest);
         findApart(patch, unitLoad(patch, settings));
     }
     if (!object.held().empty()) {

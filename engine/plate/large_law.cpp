@@ -314,6 +314,22 @@ NodeField leftOver(const Shapes& shapes, const Shell& shell, const Solves& solve
     return left;
 }
 
+/// Returns forces without those beyond a border, where next to nothing resists, and a shape would be made of it. There D
+/// C, a length squared that is the same all over a sheet of one thickness, is next to nothing too.
+NodeField onSheet(const Shell& shell, NodeField forces)
+{
+    constexpr double kResists = 3e-3; // share of the sheet's rigidity that may be pushed like the sheet [1]
+    if (shell.stressBed.values().empty()) return forces;
+    const auto at = [&](std::size_t n) {
+        return shell.bending.rigidity.values()[n] * shell.membraneCompliance.values()[n];
+    };
+    double sheet = 0;
+    for (std::size_t n = 0; n < forces.values().size(); ++n) sheet = std::max(sheet, at(n));
+    for (std::size_t n = 0; n < forces.values().size(); ++n)
+        forces.values()[n] *= std::min(1.0, at(n) / (kResists * sheet));
+    return forces;
+}
+
 /// Adds the answer of the linear shell to what the best sum of the shapes at a depth leaves over.
 void addWhatIsMissing(Shapes& shapes, const Shell& shell, const NodeField& load, const Solves& solves, double depth)
 {
@@ -324,7 +340,7 @@ void addWhatIsMissing(Shapes& shapes, const Shell& shell, const NodeField& load,
     const double                     force = leastAt(energy, at).slope[0];
     for (std::size_t i = 0; i < kMost; ++i)
         for (std::size_t k = 0; k < kMost; ++k) parts[i] += mix[i][k] * at[k];
-    NodeField right = leftOver(shapes, shell, solves, load, parts, force);
+    NodeField right = onSheet(shell, leftOver(shapes, shell, solves, load, parts, force));
     NodeField w     = solves.bend(right);
     addShape(shapes, shell, solves, std::move(w), std::move(right));
 }

@@ -17,8 +17,7 @@ namespace {
 /// Rigidity beyond the border over that of the sheet [1]. More of it bridges gaps: two arms of a hairpin 8 mm apart, of
 /// which one was held and the other touched, were felt 17 times too stiff with 3e-3, 3.6 times with 1e-4, and 12 % with
 /// this. Shells of which that makes too much for multigrid are solved by the reference, in a second at 256 cells.
-/// The law of deep dents counts how the void slopes as well: of arches it is 8 % off with less than its own.
-constexpr double kVoid = 1e-6, kVoidOfDeepDents = 3e-3;
+constexpr double kVoid = 1e-6;
 
 /// A bed of a fourth-order operator of stiffness D that clamps a field on a border: 30 D / cell^4 ((2.7 - depth) / 3)^6
 /// at a depth of that many cells, so that it begins within the border. Clamped is a beam there to a hundredth of a
@@ -116,13 +115,13 @@ bool isHeld(const Patch& patch, std::size_t node)
     return !patch.held.values().empty() && patch.held.values()[node] >= 0.5;
 }
 
-void cutOut(Patch& patch, double spacing, Large large)
+void cutOut(Patch& patch, double spacing)
 {
     const auto       touched = std::span(patch.positions).first(patch.touched);
     const PlateGrid& grid    = patch.window.grid;
     patch.inside             = depthWithin(patch.window, touched, spacing, (kBedWithin + 1) * cellOf(grid));
     patch.covered            = coveredShare(grid, patch.inside);
-    patch.beyond             = large == Large::on ? kVoidOfDeepDents : kVoid;
+    patch.beyond             = kVoid;
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n)
         patch.plate.rigidity.values()[n] *= shareOf(patch.covered.values()[n], patch.beyond);
 }

@@ -12,7 +12,7 @@ namespace palp {
 /// \differs the paper's window is cut from the object and held at its sides
 /// \param spacing  of the points where they are farthest apart [m]
 /// \pre the plate's rigidity is that of the sheet, also beyond its border
-void cutOut(Patch& patch, double spacing, Large large);
+void cutOut(Patch& patch, double spacing);
 
 /// Does the same with the membrane, which carries no force beyond the border (patch.stressBed), and where nodes are
 /// held hardly stretches: what surrounds a shell then stays where it is in its plane. Fills in patch.thrusts too.
