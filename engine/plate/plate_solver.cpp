@@ -38,7 +38,7 @@ bool fitsReference(const PlateGrid& grid)
 
 std::string stoppedAt(const SolveReport& report)
 {
-    if (std::isnan(*report.errorEstimate)) return "the multigrid solver found what is not a number"; // of some shells
+    if (std::isnan(*report.errorEstimate)) return "the multigrid solver did not converge"; // some shells
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
 }
 
