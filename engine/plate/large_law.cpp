@@ -314,19 +314,13 @@ NodeField leftOver(const Shapes& shapes, const Shell& shell, const Solves& solve
     return left;
 }
 
-/// Returns forces without those beyond a border, where next to nothing resists, and a shape would be made of it. There D
-/// C, a length squared that is the same all over a sheet of one thickness, is next to nothing too.
+/// Returns forces without those beyond a border, where next to nothing resists, and a shape would be made of it.
 NodeField onSheet(const Shell& shell, NodeField forces)
 {
-    constexpr double kResists = 3e-3; // share of the sheet's rigidity that may be pushed like the sheet [1]
-    if (shell.stressBed.values().empty()) return forces;
-    const auto at = [&](std::size_t n) {
-        return shell.bending.rigidity.values()[n] * shell.membraneCompliance.values()[n];
-    };
-    double sheet = 0;
-    for (std::size_t n = 0; n < forces.values().size(); ++n) sheet = std::max(sheet, at(n));
-    for (std::size_t n = 0; n < forces.values().size(); ++n)
-        forces.values()[n] *= std::min(1.0, at(n) / (kResists * sheet));
+    constexpr double kResists = 3e-3; // share of the sheet that may be pushed like the sheet [1]
+    const NodeField  shares   = sharesOfSheet(shell);
+    for (std::size_t n = 0; n < shares.values().size(); ++n)
+        forces.values()[n] *= std::min(1.0, shares.values()[n] / kResists);
     return forces;
 }
 

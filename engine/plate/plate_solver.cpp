@@ -20,6 +20,7 @@
 #include "engine/plate/detail/rigidity_unit.h"
 #include "engine/plate/load.h"
 #include "engine/plate/multigrid/direct_plate.h"
+#include "engine/plate/multigrid/direct_shell.h"
 #include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/plate/multigrid/multigrid_shell_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
@@ -42,7 +43,8 @@ std::string stoppedAt(const SolveReport& report)
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
 }
 
-constexpr std::size_t kMostKeptNodes = 129 * 129; ///< of a shell whose solver's memory is kept: some 20 MB
+constexpr std::size_t kMostKeptFactor = 257 * 257; ///< nodes of shells of which two factors are kept
+constexpr std::size_t kMostKeptNodes  = 129 * 129; ///< of a shell whose solver's memory is kept: some 20 MB
 
 /// Returns how far off an answer may be whose work is right to the tolerance: that is of the second order [1].
 double looseFor(double tolerance)
@@ -744,6 +746,10 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     FootprintSolution solution;
+    if (auto exact = byFactor(shell, loads, whole, tolerance)) {
+        noteSolvedBy(exact->whole.report.solver);
+        return std::move(*exact);
+    }
     if (processor_) solution = byProcessor(shell, loads, whole, tolerance, drawn);
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
         if (processor_) note_ = stoppedAt(solution.whole.report);
@@ -751,6 +757,25 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
     }
     noteSolvedBy(solution.whole.report.solver);
     return solution;
+}
+
+std::optional<FootprintSolution> PlateSolver::byFactor(const Shell& shell, std::span<const Footprint> loads,
+                                                       std::size_t whole, double tolerance)
+{
+    if (!processor_ || !DirectShell::pays(shell) || !fitsReference(shell.bending.grid)) return std::nullopt;
+    // A law of large deflections has a grid of its own; a factor of a large one takes hundreds of megabytes.
+    const std::size_t kept = shell.bending.grid.nodes() > kMostKeptFactor ? 1 : 2;
+    const auto        known =
+        std::ranges::find_if(factors_, [&](const auto& of) { return areAlike(of.shell(), shell) && of.has(loads); });
+    if (known != factors_.end()) {
+        factors_.splice(factors_.begin(), factors_, known);
+    } else {
+        std::vector<double> memory;
+        for (; factors_.size() >= kept; factors_.pop_back()) memory = factors_.back().takeMemory();
+        factors_.emplace_front(shell, loads, std::move(memory));
+    }
+    if (!processor_->isHost()) note_ = "objects that end in their window are solved by a factor, which the host makes";
+    return factors_.front().solve(loads, whole, tolerance);
 }
 
 FootprintSolution PlateSolver::byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,

@@ -1,6 +1,7 @@
 #pragma once
 #include <exception>
 #include <functional>
+#include <list>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +15,8 @@
 #include "engine/plate/shell.h"
 
 namespace palp {
+
+class DirectShell;
 
 namespace compute {
 struct ContextSettings;
@@ -104,9 +107,10 @@ public:
     [[nodiscard]] FootprintSolution solveFootprints(const Plate& plate, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance, double drawn);
 
-    /// Does the same for a shell; works hold its shear across the thickness too, see shearWork(). A processor
-    /// without doubles, or whose memory does not fit one, lets the host solve it, and note() says so. On the reference
-    /// solver every load is solved by the reference solver of shells.
+    /// Does the same for a shell; works hold its shear across the thickness too, see shearWork(). An object that ends in
+    /// its window is solved by a factor on the host, see DirectShell. A processor without doubles, or whose memory does
+    /// not fit one, lets the host solve it too; note() says either. On the reference solver every load is solved by the
+    /// reference solver of shells.
     [[nodiscard]] FootprintSolution solveFootprints(const Shell& shell, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance, double drawn);
 
@@ -165,6 +169,9 @@ private:
     byReference(const Plate& plate, std::span<const NodeField> nodalForces, double tolerance);
     [[nodiscard]] static FootprintSolution byReference(const Plate& plate, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
+    /// \return nothing if a factor does not pay, or is not exact enough
+    [[nodiscard]] std::optional<FootprintSolution> byFactor(const Shell& shell, std::span<const Footprint> loads,
+                                                            std::size_t whole, double tolerance);
     [[nodiscard]] FootprintSolution byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
                                                 double tolerance, double drawn);
     [[nodiscard]] static FootprintSolution byReference(const Shell& shell, std::span<const Footprint> loads,
@@ -174,6 +181,7 @@ private:
     std::unique_ptr<Multigrid> processor_; ///< null: the reference solver is used
     std::unique_ptr<Multigrid> host_;      ///< what takes over where the processor cannot; null: not needed yet
     std::unique_ptr<Learned>   learned_;   ///< from plates that could not be solved, or not where they should be
+    std::list<DirectShell>     factors_;   ///< the newest first
     std::string                name_{kReference};
     std::string                note_;
     std::string                takeover_; ///< the last one, in a sentence

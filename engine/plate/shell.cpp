@@ -154,6 +154,19 @@ Plate membraneOf(const Shell& shell)
     return membrane;
 }
 
+NodeField sharesOfSheet(const Shell& shell)
+{
+    if (shell.stressBed.values().empty()) return {};
+    NodeField shares = shell.bending.rigidity;
+    double    most   = 0;
+    for (std::size_t n = 0; n < shares.values().size(); ++n) {
+        shares.values()[n] *= shell.membraneCompliance.values()[n];
+        most = std::max(most, shares.values()[n]);
+    }
+    for (double& share : shares.values()) share /= most;
+    return shares;
+}
+
 bool isStressFree(const Shell& shell) noexcept
 {
     return shell.stressEdges == PlateEdges{Edge::free, Edge::free, Edge::free, Edge::free} &&

@@ -1,11 +1,9 @@
+#include "engine/plate/host/fronts.h"
 #include "engine/plate/host/operator_rows.h"
-#include "engine/plate/host/rim_view.h"
 #include "engine/plate/host/tile_runs.h"
 
 // The exact correction at the rims of inclusions: a sparse factor in dense fronts, and its solves. See
 // engine/plate/multigrid/detail/rim.h. There is no shader for it.
-//
-// All arithmetic is in vectors of eight numbers whatever the instruction set, in one order: the bits are the same.
 
 namespace palp::PALPATE_ISA {
 
@@ -13,28 +11,6 @@ void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, float* 
 void rimEntries(const PlateLevel& g, const float* D, const RimView& rim, double* to);
 
 namespace {
-
-constexpr int kLanes = kLoadsTogether;
-
-inline std::ptrdiff_t max(std::ptrdiff_t a, std::ptrdiff_t b)
-{
-    return a < b ? b : a;
-}
-
-/// Subtracts the columns before c from kVectors vectors of column c of a front.
-template <int kVectors, class Real>
-void subtractColumns(Real* front, int rows, int c, int before, int row)
-{
-    Together<Real> sums[kVectors];
-    Real*          column = front + std::ptrdiff_t(c) * rows + row;
-    for (int v = 0; v < kVectors; ++v) sums[v] = eightOf(column + v * kLanes);
-    for (int k = 0; k < before; ++k) {
-        const Real* other  = front + std::ptrdiff_t(k) * rows;
-        const Real  factor = other[c];
-        for (int v = 0; v < kVectors; ++v) sums[v] -= factor * eightOf(other + row + v * kLanes);
-    }
-    for (int v = 0; v < kVectors; ++v) store(column + v * kLanes, sums[v]);
-}
 
 /// A front while it is factored: rows of its own unknowns and its border, then as many rows as own ones for P^-1.
 struct Workplace {
@@ -57,21 +33,10 @@ bool eliminate(const RimFront& f, const Real* entries, Real* front, Real* invers
 {
     const Real      doubtful = Real(sizeof(Real) == sizeof(double) ? kLeastPivotDouble : kDoubtfulPivot);
     const Workplace at(f);
-    for (int c = 0; c < f.own + f.border; ++c) {
-        Real*     column = front + std::ptrdiff_t(c) * at.rows;
-        const int before = min(c, f.own), end = c < f.own ? at.rows : at.upper;
-        if (c < f.own) column[at.upper + c] = Real(1);
-        int row = c / kLanes * kLanes;
-        for (; row + 4 * kLanes <= end; row += 4 * kLanes) subtractColumns<4>(front, at.rows, c, before, row);
-        for (; row < end; row += kLanes) subtractColumns<1>(front, at.rows, c, before, row);
-        if (c >= f.own) continue;
-        const Real pivot = column[c];
-        if (!(pivot > doubtful * entries[std::ptrdiff_t(f.first + c) * kSlots])) return false;
-        inverse[c] = Real(1) / sqrt(pivot);
-        for (row = c / kLanes * kLanes; row < end; row += kLanes)
-            store(column + row, inverse[c] * eightOf(column + row));
-    }
-    return true;
+    for (int c = 0; c < f.own; ++c) front[std::ptrdiff_t(c) * at.rows + at.upper + c] = Real(1);
+    return eliminate(
+        FrontAtWork<Real>{front, at.rows, f.own, f.own + f.border, at.rows, at.upper},
+        [=](int c) { return doubtful * entries[std::ptrdiff_t(f.first + c) * kSlots]; }, inverse, AllPositive());
 }
 
 /// Divides what B and the unit matrix are in column k by L', in kVectors vectors from a row on; later columns are done.
@@ -134,72 +99,6 @@ void assemble(const PlateLevel& g, const RimView& rim, const RimFront& f, const 
     }
 }
 
-/// Adds what a front before it left of its border.
-template <class Real>
-void extendAdd(const RimView& rim, const RimFront& from, const Real* left, const RimFront& f, const int* localOf,
-               int* local, Real* front)
-{
-    const int  stride = from.borderRows, rows = Workplace(f).rows;
-    const int* border = rim.borders + from.borderAt;
-    int* const ends   = local + rim.mostRows; // of runs of neighbours
-    for (int n = from.border - 1; n >= 0; --n) {
-        local[n] = border[n] < f.first + f.own ? border[n] - f.first : localOf[border[n]];
-        ends[n]  = n + 1 < from.border && local[n + 1] == local[n] + 1 ? ends[n + 1] : n + 1;
-    }
-    for (int c = 0; c < from.border; ++c) {
-        Real*       column = front + std::ptrdiff_t(local[c]) * rows;
-        const Real* own    = left + std::ptrdiff_t(c) * stride;
-        for (int n = c; n < from.border; n = ends[n]) {
-            Real* to = column + local[n];
-#pragma GCC ivdep
-            for (int m = n; m < ends[n]; ++m) to[m - n] += own[m];
-        }
-    }
-}
-
-/// What fronts left of their borders and no later one has taken yet, one above the other.
-class Left {
-public:
-    struct One {
-        int            front;
-        std::ptrdiff_t at;
-    };
-
-    std::ptrdiff_t put(int n, const RimFront& f)
-    {
-        const std::ptrdiff_t at = height_;
-        all_[count_++]          = {n, at};
-        height_ += std::ptrdiff_t(f.borderRows) * f.border;
-        return at;
-    }
-    One take()
-    {
-        height_ = all_[--count_].at;
-        return all_[count_];
-    }
-    [[nodiscard]] std::ptrdiff_t height() const { return height_; }
-
-private:
-    One            all_[kMostOpenFronts + 1];
-    int            count_  = 0;
-    std::ptrdiff_t height_ = 0;
-};
-
-std::ptrdiff_t stackOf(const RimView& rim)
-{
-    Left           left;
-    std::ptrdiff_t most = 0;
-    for (int n = 0; n < rim.frontCount; ++n) {
-        if (!rim.fronts[n].isLeaf) {
-            left.take();
-            left.take();
-        }
-        left.put(n, rim.fronts[n]);
-        most = max(most, left.height());
-    }
-    return most;
-}
-
 /// \return whether rounding leaves something of each pivot
 template <class Real>
 bool factorRim(const PlateLevel& g, const float* D, const RimView& rim)
@@ -210,7 +109,7 @@ bool factorRim(const PlateLevel& g, const float* D, const RimView& rim)
     Real* const                       front   = fronts.of(2 * std::ptrdiff_t(rim.mostRows) * rim.mostRows);
     Real* const                       inverse = inverses.of(rim.mostRows);
     int* const                        localOf = locals.of(std::ptrdiff_t(rim.unknowns) + 2 * rim.mostRows);
-    Real* const                       stack   = stacked.of(stackOf(rim));
+    Real* const                       stack   = stacked.of(stackOf(rim.fronts, rim.frontCount));
     rimEntries(g, D, rim, entries);
 
     Left left;
@@ -222,8 +121,10 @@ bool factorRim(const PlateLevel& g, const float* D, const RimView& rim)
         assemble(g, rim, f, entries, localOf, front);
         if (!f.isLeaf)
             for (int half = 0; half < 2; ++half) {
-                const auto taken = left.take();
-                extendAdd(rim, rim.fronts[taken.front], stack + taken.at, f, localOf, localOf + rim.unknowns, front);
+                const auto      taken  = left.take();
+                const RimFront& before = rim.fronts[taken.front];
+                extendAdd(rim.borders + before.borderAt, before, stack + taken.at, f, at.rows, localOf,
+                          localOf + rim.unknowns, rim.mostRows, front);
             }
         if (!eliminate(f, entries, front, inverse)) return false;
         keepColumns(f, front, inverse, static_cast<Real*>(rim.columns) + f.columnsAt);

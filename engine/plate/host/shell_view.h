@@ -3,6 +3,7 @@
 
 #include "compute_shaders/shared/plate_level.h"
 #include "compute_shaders/shared/shell_layout.h"
+#include "engine/plate/host/rim_view.h"
 
 namespace palp {
 
@@ -32,6 +33,18 @@ struct ShellPush {
 struct BandPush {
     int                   unknowns, halfBand;
     const std::ptrdiff_t* places; ///< of the unknowns in a field of one load
+};
+
+/// The fronts of a symmetric matrix, as the host's kernels see them. Unknowns are numbered in the order of elimination.
+struct ShellFronts {
+    const RimFront*       fronts; ///< a front has as many rows as border and own unknowns, in whole vectors
+    const int*            borders;
+    int                   frontCount, unknowns, mostRows;
+    const std::ptrdiff_t* starts; ///< of each unknown's column in the two lists of entries, the diagonal first
+    const int*            rows;   ///< unknowns, no earlier than the column's
+    const double*         values;
+    const double*         signs;   ///< that pivots must have: 1 or -1, by unknown
+    double*               columns; ///< of the factor: a front's own unknowns, then its border, 1 / L on the diagonal
 };
 
 /// Sizes of vectors, for sums over all nodes.

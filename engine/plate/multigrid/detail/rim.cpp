@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "compute_shaders/shared/tile_layout.h"
 #include "engine/core/contract.h"
@@ -52,8 +53,13 @@ bool Rim::divide(const shared::PlateLevel& level, std::span<const float> rigidit
 
 void Rim::divideAll(const shared::PlateLevel& level)
 {
+    divideThese(level, std::vector<std::uint8_t>(nodesOf(level), 1));
+}
+
+void Rim::divideThese(const shared::PlateLevel& level, std::vector<std::uint8_t> which)
+{
     level_ = level;
-    isIn_.assign(nodesOf(level), 1);
+    isIn_  = std::move(which);
     listNodes();
     const bool isDivided = divideFound(std::numeric_limits<double>::infinity());
     PALP_EXPECT(isDivided, "the halves of a grid are as deep as their number's logarithm");

@@ -25,6 +25,9 @@ public:
 
     /// Takes all nodes of a level that move, and divides them.
     void divideAll(const shared::PlateLevel& level);
+    /// Does the same with some of its nodes.
+    /// \param which  1 for those, by node
+    void divideThese(const shared::PlateLevel& level, std::vector<std::uint8_t> which);
 
     /// Makes room for a factor.
     /// \return what the host's kernels need, valid until the next call
@@ -32,6 +35,11 @@ public:
 
     [[nodiscard]] double work() const noexcept { return work_; } ///< of the factor [multiplications]
     [[nodiscard]] int    unknowns() const noexcept { return int(nodes_.size()); }
+
+    [[nodiscard]] std::span<const RimFront> fronts() const noexcept { return fronts_; }
+    [[nodiscard]] std::span<const int>      borders() const noexcept { return borders_; } ///< numbers of nodes()
+    [[nodiscard]] std::span<const int>      nodes() const noexcept { return nodes_; } ///< in the order of elimination
+    [[nodiscard]] std::span<const int>      numbers() const noexcept { return numbers_; } ///< by node, or -1
 
 private:
     [[nodiscard]] bool divideFound(double mostWork);
