@@ -15,12 +15,12 @@ double largestCell(const PlateGrid& grid)
     return std::max(grid.spacingX, grid.spacingZ);
 }
 
-/// Returns the distance of each node from the nearest point [m].
-NodeField distanceToPoints(const PatchWindow& window, std::span<const ChartPoint> positions)
+/// Returns the distance of each node from the nearest point [m]; more, where it is more than `exact`.
+NodeField distanceToPoints(const PatchWindow& window, std::span<const ChartPoint> positions, double exact)
 {
     const PlateGrid& grid = window.grid;
     NodeField        distance(grid);
-    const auto       nearest = nearestPoint(grid, window.corner, positions);
+    const auto       nearest = nearestPoint(grid, window.corner, positions, exact);
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j) {
             const ChartPoint& p = positions[nearest[std::size_t(i) * std::size_t(grid.nodesZ()) + std::size_t(j)]];
@@ -62,7 +62,7 @@ NodeField depthWithin(const PatchWindow& window, std::span<const ChartPoint> pos
     const PlateGrid& grid     = window.grid;
     const double     radius   = kResamplingNearby * resamplingWidth(pointSpacing, largestCell(grid));
     const double     shift    = radius - kBeyond * pointSpacing; // [m] from the discs' border inwards
-    const NodeField  distance = distanceToPoints(window, positions);
+    const NodeField  distance = distanceToPoints(window, positions, radius + 3 * largestCell(grid));
     NodeField        depth    = depthInDiscs(grid, distance, radius, deepest + shift);
     for (std::size_t n = 0; n < depth.values().size(); ++n) {
         const double beyond = distance.values()[n] - radius; // the discs' border

@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "engine/chart/nearest_map.h"
 #include "engine/core/contract.h"
 
 namespace palp {
@@ -169,17 +170,6 @@ struct Sited {
     double      share = 0; ///< [1]
 };
 
-/// Returns the tensor of the site nearest to a place.
-ChartTensor nearestTo(const ChartPoint& place, std::span<const Sited> sites)
-{
-    return std::ranges::min_element(sites, {},
-                                    [&](const Sited& site) {
-                                        const double x = site.place.x - place.x, z = site.place.z - place.z;
-                                        return x * x + z * z;
-                                    })
-        ->tensor;
-}
-
 /// Returns the tensor at a place by linear regression over the sites within a radius; empty where there are none.
 std::optional<ChartTensor> regressionAt(const ChartPoint& place, std::span<const Sited> sites, double radius)
 {
@@ -271,10 +261,14 @@ Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const
     for (const CurvatureSite& site : sitesOf(rung, what)) // errors of fits go as 1 / sure
         sites.push_back({site.place, inChart(site.here, frame), site.share * site.here.sure * site.here.sure});
     if (sites.empty()) return {};
-    const Quietened    quiet  = quietened(sites, error);
-    const double       radius = kAround * rungRadius(rung);
-    Lattice            lattice;
-    std::vector<Sited> beside; // of a row
+    const Quietened quiet  = quietened(sites, error);
+    const double    radius = kAround * rungRadius(rung);
+    const PlateGrid places{side - 1, side - 1, window.grid.sizeX() / (side - 1), window.grid.sizeZ() / (side - 1)};
+    std::vector<ChartPoint> ofSites;
+    for (const Sited& site : sites) ofSites.push_back(site.place);
+    const std::vector<std::uint32_t> nearest = nearestPoint(places, window.corner, ofSites);
+    Lattice                          lattice;
+    std::vector<Sited>               beside; // of a row
     for (int i = 0; i < side; ++i) {
         const double x = window.corner.x + window.grid.sizeX() * i / (side - 1);
         beside.clear();
@@ -283,7 +277,7 @@ Lattice latticeOf(const PatchWindow& window, int side, const Frame& frame, const
         for (int j = 0; j < side; ++j) {
             const ChartPoint place{x, window.corner.z + window.grid.sizeZ() * j / (side - 1)};
             const auto       found = regressionAt(place, beside, radius);
-            lattice.push_back(quiet(found ? *found : nearestTo(place, sites)));
+            lattice.push_back(quiet(found ? *found : sites[nearest[lattice.size()]].tensor));
         }
     }
     return lattice;

@@ -22,6 +22,8 @@ constexpr int kLanes     = 4; ///< nodes that one vector of doubles serves; the 
 constexpr int kLeastRows = 2;
 constexpr int kMostRows  = 4;
 
+constexpr std::uint32_t kNoPoint = std::numeric_limits<std::uint32_t>::max();
+
 using Numbers = double __attribute__((vector_size(kLanes * sizeof(double))));
 
 /// The best offers so far, with a margin of nodes never read, so that points near the edge need no special care.
@@ -165,7 +167,7 @@ struct Bands {
 class Buckets {
 public:
     Buckets(std::span<const ChartPoint> points, const Bands& x, const Bands& z)
-        : points_(points), x_(x), z_(z), first_(std::size_t(x.count) * std::size_t(z.count), kNone),
+        : points_(points), x_(x), z_(z), first_(std::size_t(x.count) * std::size_t(z.count), kNoPoint),
           next_(points.size())
     {
         for (std::size_t p = 0; p < points.size(); ++p) {
@@ -174,15 +176,19 @@ public:
             first                = std::uint32_t(p);
         }
         levels_.push_back({x.count, z.count, std::vector<std::uint8_t>(first_.size())});
-        std::ranges::transform(first_, levels_[0].full.begin(), [](std::uint32_t first) { return first != kNone; });
+        std::ranges::transform(first_, levels_[0].full.begin(), [](std::uint32_t first) { return first != kNoPoint; });
         while (levels_.back().rows > 1 || levels_.back().columns > 1) levels_.push_back(aboveOf(levels_.back()));
     }
 
-    /// Returns the nearest point, given one that may be it.
-    [[nodiscard]] std::uint32_t nearest(const ChartPoint& node, std::uint32_t guess) const
+    /// Returns the nearest point within the square root of `farthest2` [m^2], given one that may be it or kNoPoint.
+    [[nodiscard]] std::uint32_t nearest(const ChartPoint& node, std::uint32_t guess, double farthest2) const
     {
         constexpr double kFar = 4; // buckets; nearer ones are looked through sooner than squares are
         Search           search{node, guess, squaredDistance(node, guess), x_.of(node.x), z_.of(node.z)};
+        if (!(search.distance2 <= farthest2)) {
+            search.best      = kNoPoint;
+            search.distance2 = farthest2;
+        }
         if (search.distance2 > kFar * kFar * x_.width * z_.width) {
             searchSquare(search, levels_.size() - 1, 0, 0);
             return search.best;
@@ -197,14 +203,13 @@ public:
 
     [[nodiscard]] double squaredDistance(const ChartPoint& node, std::uint32_t point) const noexcept
     {
+        if (point == kNoPoint) return std::numeric_limits<double>::infinity();
         const double dx = node.x - points_[point].x;
         const double dz = node.z - points_[point].z;
         return dx * dx + dz * dz;
     }
 
 private:
-    static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-
     struct Search {
         ChartPoint    node;
         std::uint32_t best;
@@ -272,7 +277,7 @@ private:
 
     void scanBucket(Search& s, std::size_t bucket) const
     {
-        for (std::uint32_t p = first_[bucket]; p != kNone; p = next_[p]) {
+        for (std::uint32_t p = first_[bucket]; p != kNoPoint; p = next_[p]) {
             const double distance2 = squaredDistance(s.node, p);
             if (distance2 < s.distance2 || (distance2 == s.distance2 && p < s.best)) {
                 s.distance2 = distance2;
@@ -355,9 +360,10 @@ struct Axis {
     return int(std::clamp(std::ceil(rows), double(kLeastRows), double(kMostRows)));
 }
 
-/// Searches for the nodes whose best offer is not within the square root of `settled2` [m^2]; every node's answer is
-/// the next one's first guess.
-void searchBeyond(double settled2, const Buckets& buckets, const Offers& offers, std::vector<std::uint32_t>& nearest)
+/// Searches within the square root of `farthest2` [m^2] for the nodes whose best offer is not within that of `settled2`;
+/// every node's answer is the next one's first guess.
+void searchBeyond(double settled2, double farthest2, const Buckets& buckets, const Offers& offers,
+                  std::vector<std::uint32_t>& nearest)
 {
     const auto  columns = std::size_t(offers.grid.nodesZ());
     std::size_t node    = 0;
@@ -373,21 +379,49 @@ void searchBeyond(double settled2, const Buckets& buckets, const Offers& offers,
             };
             if (j > 0) consider(nearest[node - 1]);
             if (i > 0) consider(nearest[node - columns]);
-            nearest[node] = buckets.nearest(place, guess);
+            nearest[node] = buckets.nearest(place, guess, farthest2);
         }
+    }
+}
+
+/// Gives the nodes that have no point one of their neighbours', the nearest of those that reach them.
+void takeFromNeighbours(const Buckets& buckets, const Offers& offers, std::vector<std::uint32_t>& nearest)
+{
+    const int                 rows = offers.grid.nodesX(), columns = offers.grid.nodesZ();
+    std::vector<std::uint8_t> is(nearest.size());
+    std::ranges::transform(nearest, is.begin(), [](std::uint32_t point) { return point == kNoPoint; });
+    const auto consider = [&](int i, int j, int fromI, int fromJ) {
+        if (fromI < 0 || fromJ < 0 || fromI >= rows || fromJ >= columns) return;
+        const ChartPoint place{offers.x[std::size_t(i + Offers::kMargin)], offers.z[std::size_t(j + Offers::kMargin)]};
+        std::uint32_t&   own       = nearest[std::size_t(i * columns + j)];
+        const std::uint32_t beside = nearest[std::size_t(fromI * columns + fromJ)];
+        if (buckets.squaredDistance(place, beside) < buckets.squaredDistance(place, own)) own = beside;
+    };
+    for (int pass = 0; pass < 2; ++pass) { // the second one reaches what lies before the first point
+        for (int i = 0; i < rows; ++i)
+            for (int j = 0; j < columns; ++j) {
+                if (!is[std::size_t(i * columns + j)]) continue;
+                consider(i, j, i - 1, j);
+                consider(i, j, i, j - 1);
+            }
+        for (int i = rows - 1; i >= 0; --i)
+            for (int j = columns - 1; j >= 0; --j) {
+                if (!is[std::size_t(i * columns + j)]) continue;
+                consider(i, j, i + 1, j);
+                consider(i, j, i, j + 1);
+            }
     }
 }
 
 } // namespace
 
 std::vector<std::uint32_t> nearestPoint(const PlateGrid& grid, const ChartPoint& origin,
-                                        std::span<const ChartPoint> points)
+                                        std::span<const ChartPoint> points, double exact)
 {
     PALP_EXPECT(grid.cellsX >= 0 && grid.cellsZ >= 0 && grid.spacingX > 0 && grid.spacingZ > 0,
                 std::to_string(grid.cellsX) + " x " + std::to_string(grid.cellsZ) + " cells of " +
                     std::to_string(grid.spacingX) + " m x " + std::to_string(grid.spacingZ) + " m");
-    PALP_EXPECT(!points.empty() && points.size() < std::numeric_limits<std::uint32_t>::max(),
-                std::to_string(points.size()) + " points");
+    PALP_EXPECT(!points.empty() && points.size() < kNoPoint, std::to_string(points.size()) + " points");
     Axis         x(origin.x, grid.spacingX, grid.cellsX);
     Axis         z(origin.z, grid.spacingZ, grid.cellsZ);
     const int    rows  = rowsFor(survey(points, x, z));
@@ -412,8 +446,12 @@ std::vector<std::uint32_t> nearestPoint(const PlateGrid& grid, const ChartPoint&
 
     constexpr double kPointsPerBucket = 2; // measured: 1 to 4 make little difference
     const double     width = std::sqrt(kPointsPerBucket * (x.high - x.low) * (z.high - z.low) / double(points.size()));
-    searchBeyond(settled2, Buckets(points, x.bands(width, points.size()), z.bands(width, points.size())), offers,
-                 nearest);
+    const Buckets    buckets(points, x.bands(width, points.size()), z.bands(width, points.size()));
+    searchBeyond(settled2, exact * exact, buckets, offers, nearest);
+    if (!std::isfinite(exact)) return nearest;
+    takeFromNeighbours(buckets, offers, nearest);
+    if (std::ranges::find(nearest, kNoPoint) != nearest.end()) // all points are far from the grid
+        searchBeyond(settled2, std::numeric_limits<double>::infinity(), buckets, offers, nearest);
     return nearest;
 }
 

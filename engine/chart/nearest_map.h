@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -15,8 +16,11 @@ namespace palp {
 ///
 /// \param origin  position of node (0, 0) [m]
 /// \param points  at least one, finite [m]; may lie outside the grid
+/// \param exact   [m] nodes from which every point is farther get one that is near, not always the nearest, in a
+///                fraction of the time
 /// \thread        pure
 [[nodiscard]] std::vector<std::uint32_t> nearestPoint(const PlateGrid& grid, const ChartPoint& origin,
-                                                      std::span<const ChartPoint> points);
+                                                      std::span<const ChartPoint> points,
+                                                      double exact = std::numeric_limits<double>::infinity());
 
 } // namespace palp

@@ -15,10 +15,10 @@ namespace {
 
 /// Takes the values of the nearest point where there is no mean yet, and counts the nodes without a point nearby.
 void takeNearest(const PatchWindow& window, std::span<const ChartPoint> positions, std::span<const PointValues> values,
-                 double nearby, std::vector<Resampled>& results)
+                 double nearby, double exact, std::vector<Resampled>& results)
 {
     const PlateGrid&                 grid    = window.grid;
-    const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions);
+    const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions, std::max(exact, nearby));
     std::size_t                      n = 0, without = 0;
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j, ++n) {
@@ -86,7 +86,7 @@ double kernelReach(double pointSpacing, double nodeSpacing) noexcept
 
 std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const ChartPoint> positions,
                                    std::span<const PointValues> values, Resampling resampling, double pointSpacing,
-                                   double sparsest, Sampling sampling)
+                                   double sparsest, Sampling sampling, double exact)
 {
     for (const PointValues& of : values)
         PALP_EXPECT(!positions.empty() && positions.size() == of.size(),
@@ -109,7 +109,7 @@ std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const Ch
             fill(window, positions, values, std::min(wider, widest), results);
         if (isFull() && surelyCovered(window, positions, widest)) return results;
     }
-    takeNearest(window, positions, values, kResamplingNearby * widest, results);
+    takeNearest(window, positions, values, kResamplingNearby * widest, exact, results);
     return results;
 }
 

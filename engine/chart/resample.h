@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -70,10 +71,12 @@ struct Resampled {
 
 /// Computes several quantities of the same points at the nodes, each as resampleRigidity() would alone and to its bits,
 /// in less time than one after the other.
+/// \param exact  [m] nodes from which every point is farther may take another near one's value, see nearestPoint()
 /// \return  in their order; nodesWithoutPoint is the same in all
 [[nodiscard]] std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const ChartPoint> positions,
                                                  std::span<const PointValues> values, Resampling resampling,
                                                  double pointSpacing, double sparsest = 0,
-                                                 Sampling sampling = Sampling::places);
+                                                 Sampling sampling = Sampling::places,
+                                                 double   exact    = std::numeric_limits<double>::infinity());
 
 } // namespace palp

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <string>
 #include <utility>
@@ -529,8 +530,12 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
         add(object.held(), [](double share) { return std::exp(share); }); // of which the log-mean
     if (!object.stiffening().empty()) add(object.stiffening(), growthOf);
 
+    // Beyond an object's border there is next to nothing of what its nearest point has, and six cells away none.
+    constexpr double kBeyond = 6;
+    const double     exact =
+        settings.windowOf == WindowOf::object ? kBeyond * cellOf(settings) : std::numeric_limits<double>::infinity();
     std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest,
-                                                   patch.coarse ? Sampling::means : Sampling::places);
+                                                   patch.coarse ? Sampling::means : Sampling::places, exact);
     patch.nodesWithoutPoint          = resampled[0].nodesWithoutPoint;
     patch.plate = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                    std::move(resampled[0].rigidity)};

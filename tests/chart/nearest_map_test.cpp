@@ -75,6 +75,33 @@ TEST(NearestMap, ClusteredPointsLeaveTheirHolesToTheNearestOfThem)
     }
 }
 
+/// Far from all points the answer is one of the neighbours': by at most a cell's diagonal it is farther than the
+/// nearest.
+TEST(NearestMap, BeyondWhatIsWantedExactlyAPointIsNear)
+{
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        std::mt19937               random(seed);
+        std::normal_distribution<> around(0, 0.0015);
+        Points                     points;
+        for (int p = 0; p < 300; ++p)
+            points.push_back(
+                {kOrigin.x + 0.3 * kGrid.sizeX() + around(random), kOrigin.z + 0.6 * kGrid.sizeZ() + around(random)});
+        const double exact = 0.002;
+        const auto   found = nearestPoint(kGrid, kOrigin, points, exact), truth = bruteForce(kGrid, kOrigin, points);
+        for (std::size_t n = 0; n < found.size(); ++n) {
+            const double x  = kOrigin.x + double(n / 30) * kGrid.spacingX,
+                         z  = kOrigin.z + double(n % 30) * kGrid.spacingZ;
+            const auto away = [&](std::uint32_t p) { return std::hypot(points[p].x - x, points[p].z - z); };
+            if (away(truth[n]) <= exact)
+                EXPECT_EQ(found[n], truth[n]) << n;
+            else
+                EXPECT_LE(away(found[n]), away(truth[n]) + 0.00086) << n;
+        }
+    }
+    const Points far{{1, 1}, {-1, 3}};
+    EXPECT_EQ(nearestPoint(kGrid, kOrigin, far, 0.001), bruteForce(kGrid, kOrigin, far));
+}
+
 TEST(NearestMap, OnePointIsNearestToAllNodesWhereverItIs)
 {
     for (const ChartPoint p : {ChartPoint{0, 0.02}, ChartPoint{-1e6, 3}, ChartPoint{1e200, -1e200}})
