@@ -1,6 +1,9 @@
 #include "engine/session/deformation.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
 
 #include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
@@ -19,8 +22,11 @@ FootprintLattice latticeOf(const Scene& scene, const PatchSettings& settings, co
     const auto of = [&](int side) { return footprintLattice(object, settings, side, solver); };
     if (scene.complianceLaw != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
-    for (int side = tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius); side > 3;
-         side -= 2) {
+    // An object's answer holds as far as its table reaches, and takes a hand's longer than a window's.
+    const int wanted = settings.windowOf == WindowOf::object
+                           ? ComplianceTable::kMostSide
+                           : tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius);
+    for (int side = wanted; side > 3; side -= 2) {
         try {
             return of(side);
         } catch (const Error&) {
@@ -46,6 +52,7 @@ void Deformation::repaint(const SoftObject& object)
 {
     PALP_EXPECT(object.size() == object_->size(), "a painted cloud has the points that it had before");
     object_ = &object;
+    kept_.reset();
 }
 
 DeformationAnswer Deformation::solve(const Touch& touch, double lead)
@@ -86,8 +93,32 @@ const std::shared_ptr<PatchUpdate>& Deformation::freeSlot()
     return found != slots_.end() ? *found : slots_.emplace_back(std::make_shared<PatchUpdate>());
 }
 
+bool Deformation::isKeptFor(const Contact& contact) const
+{
+    constexpr double kPart = 0.5, kAlike = 0.5; // of the reach; cosine of 60 degrees [1]
+    if (!kept_ || glm::dot(contact.outward, kept_->update.table.chart.frame.normal) < kAlike) return false;
+    const ComplianceTable& table = kept_->update.table;
+    const auto             place = table.chart.project(contact.point);
+    if (!place || !(std::max(std::abs(place->x), std::abs(place->z)) < kPart * table.reach())) return false;
+    const auto over = table.chart.lift(*place); // another layer of a fold is farther off than a sheet is thick
+    return over && glm::length(*over - contact.point) < kept_->patch.thickness;
+}
+
+DeformationAnswer Deformation::keptFor(const Contact& contact, const Touch& touch)
+{
+    const std::shared_ptr<PatchUpdate>& slot = freeSlot();
+    *slot                                    = kept_->update;
+    slot->table.sequence                     = touch.sequence;
+    slot->table.time                         = touch.time;
+    Patch patch                              = kept_->patch;
+    patch.contact                            = contact;
+    patch.times                              = {};
+    return {slot, std::move(patch), {}};
+}
+
 DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touch)
 {
+    if (isKeptFor(contact)) return keptFor(contact, touch);
     try {
         const std::shared_ptr<PatchUpdate>& slot   = freeSlot();
         PatchUpdate&                        update = *slot;
@@ -101,6 +132,7 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         update.errorEstimate  = patch.report.errorEstimate.value_or(0);
         update.iterations     = patch.report.iterations.value_or(0);
         update.shape          = depthShapeOf(patch);
+        if (settings_.windowOf == WindowOf::object) kept_ = {update, patch};
         return {slot, std::move(patch), {}};
     } catch (const Error& error) { // the window is off the object, or the plate has no solution there
         return {{}, {}, error.what()};

@@ -37,6 +37,9 @@ public:
     /// Solves for where the touch will be a lead later. If that is off the object, or the points determine no
     /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     ///
+    /// Of an object that the window spans, the last answer holds for what is touched within half the reach of its table:
+    /// the object bends in the same way wherever it is touched, and the table has its answers there.
+    ///
     /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
     /// for its place. Where the surface is too far away, or has no answer there, there is no update and no reason.
     ///
@@ -73,6 +76,8 @@ private:
     [[nodiscard]] DeformationAnswer                   solveSomewhere(const Touch& touch, double lead);
     [[nodiscard]] DeformationAnswer                   solveAhead(const Touch& touch, double lead);
     [[nodiscard]] DeformationAnswer                   solveAt(const Contact& contact, const Touch& touch);
+    [[nodiscard]] bool                                isKeptFor(const Contact& contact) const;
+    [[nodiscard]] DeformationAnswer                   keptFor(const Contact& contact, const Touch& touch);
     [[nodiscard]] const std::shared_ptr<PatchUpdate>& freeSlot();
 
     const SoftObject*    object_; ///< never null
@@ -83,6 +88,11 @@ private:
     FootprintLattice     lattice_;
     HomogeneousLaw       firstLaw_;
     std::optional<Frame> frame_; ///< of the last patch, carried to the next
+    struct Kept {
+        PatchUpdate update;
+        Patch       patch;
+    };
+    std::optional<Kept> kept_; ///< the last answer, where the window spans the object
     /// Memory for answers. One that nobody else has a share in is free: in a session there are four at most, and one.
     std::vector<std::shared_ptr<PatchUpdate>> slots_;
 };
