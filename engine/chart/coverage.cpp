@@ -60,7 +60,7 @@ NodeField depthWithin(const PatchWindow& window, std::span<const ChartPoint> pos
 {
     constexpr double kBeyond  = 0.5; // spacings from the last points to the border [1]
     const PlateGrid& grid     = window.grid;
-    const double     radius   = kResamplingNearby * resamplingWidth(pointSpacing, largestCell(grid));
+    const double     radius   = closedGap(pointSpacing, largestCell(grid)) / 2;
     const double     shift    = radius - kBeyond * pointSpacing; // [m] from the discs' border inwards
     const NodeField  distance = distanceToPoints(window, positions, radius + 3 * largestCell(grid));
     NodeField        depth    = depthInDiscs(grid, distance, radius, deepest + shift);
@@ -69,6 +69,11 @@ NodeField depthWithin(const PatchWindow& window, std::span<const ChartPoint> pos
         depth.values()[n]   = (beyond > 0 ? -beyond : std::min(depth.values()[n], deepest + shift)) - shift;
     }
     return depth;
+}
+
+double closedGap(double pointSpacing, double cell) noexcept
+{
+    return 2 * kResamplingNearby * resamplingWidth(pointSpacing, cell);
 }
 
 NodeField coveredShare(const PlateGrid& grid, const NodeField& depth)

@@ -19,6 +19,9 @@ namespace palp {
 [[nodiscard]] NodeField depthWithin(const PatchWindow& window, std::span<const ChartPoint> positions,
                                     double pointSpacing, double deepest);
 
+/// Returns the width of the gaps in a sheet that depthWithin() closes [m].
+[[nodiscard]] double closedGap(double pointSpacing, double cell) noexcept;
+
 /// Returns the share of the sheet at the nodes [1]: 1 inside, 0 outside, and between them over one cell, half of it on
 /// the border.
 /// \param depth  of depthWithin(), with a cell and more as the deepest

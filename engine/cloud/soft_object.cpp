@@ -50,6 +50,7 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
       stiffening_(std::make_shared<const std::vector<double>>()), held_(std::make_shared<const std::vector<double>>()),
       material_(material)
 {
+    extent_ = extentOf(cloud_.positions(), survey_->spacings());
 }
 
 SoftObject SoftObject::repainted(std::vector<double> stiffness) const

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/cloud/extent.h"
 #include "engine/cloud/material.h"
 #include "engine/cloud/neighbour_index.h"
 #include "engine/cloud/point_cloud.h"
@@ -64,6 +65,8 @@ public:
     [[nodiscard]] std::span<const glm::dvec3> positions() const noexcept { return cloud_.positions(); } ///< [m]
     [[nodiscard]] double                      spacing() const noexcept { return index_->spacing(); }    ///< [m]
 
+    [[nodiscard]] const Extent& extent() const noexcept { return extent_; }
+
     /// Returns the object by one point per cube of about this side [m], which is made at the first call; see
     /// CoarseObject.
     /// \thread any; the first call for a side takes up to a second for millions of points
@@ -103,6 +106,7 @@ private:
     [[nodiscard]] std::shared_ptr<CoarseObjects> coarseShapes() const;
 
     PointCloud                                   cloud_;
+    Extent                                       extent_;
     std::shared_ptr<const NeighbourIndex>        index_;           ///< never null
     std::shared_ptr<const std::vector<Triangle>> faces_;           ///< never null
     std::shared_ptr<const SurfaceMesh>           mesh_;            ///< never null

@@ -17,7 +17,7 @@ namespace palp {
 
 PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)
 {
-    constexpr double kMargin = 1.04, kFinest = 0.25; // diagonals to the side of the window; fingertips to a cell [1]
+    constexpr double kMargin = 1.04, kFinest = 0.25; // lengths to half a side of the window; fingertips to a cell [1]
     constexpr int    kFewest = 256, kMost = 512, kTogether = 16; // cells; a multiple that a multigrid can coarsen
     PatchSettings    settled = settings;
     if (settings.windowOf == WindowOf::dent) {
@@ -25,14 +25,16 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
         settled.window   = dentWindow(object, settings);
     }
     if (settings.windowOf != WindowOf::object) return settled;
-    const double wanted = 2 * (kMargin * object.cloud().bounds().diagonal() + 3 * object.spacing()); // [m]
+    const Extent extent = object.extent();
+    const auto   around = [&](double length) { return 2 * (kMargin * length + 3 * object.spacing()); };
+    const double wanted = around(extent.across); // [m]
     const int    finest = std::clamp((settings.cells + kTogether - 1) / kTogether * kTogether, kFewest, kMost);
-    const double cell =
-        std::min(std::max(settings.window / settings.cells, kFinest * settings.footprintRadius), wanted / finest);
-    const auto blocks = std::ceil(wanted / cell / kTogether - 1e-9);
-    settled.cells     = int(std::clamp(blocks * kTogether, double(kTogether), double(kMost)));
-    settled.window    = std::max(wanted, settled.cells * cell);
-    settled.edges     = {Edge::free, Edge::free, Edge::free, Edge::free};
+    const double cell   = std::min(std::max(settings.window / settings.cells, kFinest * settings.footprintRadius),
+                                   around(extent.length) / finest);
+    const auto   blocks = std::ceil(wanted / cell / kTogether - 1e-9);
+    settled.cells       = int(std::clamp(blocks * kTogether, double(kTogether), double(kMost)));
+    settled.window      = std::max(wanted, settled.cells * cell);
+    settled.edges       = {Edge::free, Edge::free, Edge::free, Edge::free};
     return settled;
 }
 

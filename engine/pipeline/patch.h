@@ -90,9 +90,10 @@ struct PatchSettings {
 
 /// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what
 /// it spans. One of a dent is as dentWindow() says; that takes milliseconds, so settle once before many touches. One
-/// of the object is twice as wide as the object is long, so that it holds all of it about any contact; its cells are
-/// as wide as `window` and `cells` say, but no finer than a fourth of the fingertip; there are 256 to 512, 256 of them
-/// or `cells` at least; and its sides, in the void, are free. A second time changes nothing.
+/// of the object is twice as wide as the object is across, so that it holds all of it about any contact, however it is
+/// turned. Its cells are as wide as `window` and `cells` say, but no finer than a fourth of the fingertip, and 128 of
+/// them or more, half of `cells`, go into the length of a strip that spreads as far as the object; there are 512 at
+/// most. Its sides, in the void, are free. A second time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.

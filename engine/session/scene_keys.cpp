@@ -448,7 +448,8 @@ std::vector<SceneKey> patchKeys()
          .write        = [](const S& s) { return heldJson(s.held); }},
         countKey(
             {.name    = "cells",
-             .help    = "cells of the plate's grid along a side of the patch window",
+             .help    = "cells of the plate's grid along a side of the patch window; of window object half of them lie "
+                        "along the object, and there are 256 to 512",
              .group   = kTouch,
              .bounds  = KeyBounds{.least = 8, .most = 1024, .multipleOf = 2},
              .control = cells},

@@ -310,13 +310,30 @@ TEST(WholeObject, SettingsSettleOnce)
         const PatchSettings once = settledFor(strip, settings), twice = settledFor(strip, once);
         EXPECT_EQ(once.cells, twice.cells) << cells;
         EXPECT_EQ(once.window, twice.window) << cells;
-        EXPECT_GE(once.window, 2 * strip.cloud().bounds().diagonal());
+        EXPECT_GE(once.window, 2 * strip.extent().across);
         EXPECT_TRUE(once.cells >= 256 && once.cells <= 512 && once.cells % 16 == 0) << once.cells;
     }
     PatchSettings fine = kWhole;
     fine.cells         = 384;
     EXPECT_EQ(settledFor(strip, fine).cells, 384) << "finer than the fingertip asks for, because somebody did";
     EXPECT_EQ(settledFor(strip, {}).window, PatchSettings{}.window);
+}
+
+/// By the box along the axes a square that is turned by 45 degrees had cells 1.4 times as wide.
+TEST(WholeObject, TheWindowIsTheSameHoweverTheObjectIsTurned)
+{
+    const auto settledAt = [](double turn) {
+        std::vector<glm::dvec3> points;
+        for (double x = -40e-3; x < 40e-3; x += 1e-3)
+            for (double y = -40e-3; y < 40e-3; y += 1e-3)
+                points.emplace_back(x * std::cos(turn) - y * std::sin(turn), x * std::sin(turn) + y * std::cos(turn),
+                                    0);
+        std::vector<double> shares(points.size(), 0.0);
+        return settledFor(objectOf(std::move(points), std::move(shares), kSheet), kWhole);
+    };
+    const PatchSettings along = settledAt(0), turned = settledAt(std::numbers::pi / 4);
+    EXPECT_EQ(turned.cells, along.cells);
+    EXPECT_NEAR(turned.window / along.window, 1, 1e-3);
 }
 
 TEST(WholeObject, AFlatStripOfAShellIsFlatWithoutAWordHoweverNarrow)

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/chart/coverage.h"
 #include "engine/cloud/touch_scale.h"
 #include "engine/core/contract.h"
 #include "engine/core/counted.h"
@@ -107,8 +108,10 @@ std::string onDents(const QualityReport& r)
 {
     char widths[32];
     std::snprintf(widths, sizeof widths, "%.1f", r.window / r.dents->typical);
-    return "dents of this shell die away over " + metres(r.dents->typical) + " (" + metres(r.dents->least) + " to " +
-           metres(r.dents->most) + "); the patch window of " + metres(r.window) + " is " + widths + " of these wide" +
+    const std::string dents = "dents of this shell die away over " + metres(r.dents->typical) + " (" +
+                              metres(r.dents->least) + " to " + metres(r.dents->most) + "); ";
+    if (r.closed > 0) return dents + "the object, all of which bends, is some " + widths + " of these wide";
+    return dents + "the patch window of " + metres(r.window) + " is " + widths + " of these wide" +
            (r.window >= 0.95 * r.dents->window ? ""
             : r.whyWindow.empty()              ? ", so that its edges are felt: set window to auto"
                                                : ", so that its edges are felt: the object is no wider");
@@ -161,19 +164,21 @@ SideSources sideSources(const SoftObject& object, bool byNormals)
 
 QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene)
 {
-    const bool   isShell = scene.patch.theory == Theory::shell;
-    const double window  = settledFor(object, scene.patch).window;
+    const bool          isShell = scene.patch.theory == Theory::shell;
+    const bool          whole   = scene.patch.windowOf == WindowOf::object;
+    const PatchSettings settled = settledFor(object, scene.patch);
+    const double        window  = bentSize(object, settled);
     return {cloudQuality(object),
             sideSources(object, !loaded.normals.empty()),
             loaded.report.coordinateRounding,
             scene.patch.footprintRadius,
             window,
             object.cloud().bounds().diagonal(),
+            whole ? closedGap(object.spacing(), settled.window / settled.cells) : 0,
             {},
             isShell ? dentLengths(object, scene.patch) : std::nullopt,
             whyDentWindow(object, scene.patch),
-            isShell && scene.patch.windowOf != WindowOf::object ? beyondShell(object, scene.patch, window)
-                                                                : BeyondShell{},
+            isShell && !whole ? beyondShell(object, scene.patch, window) : BeyondShell{},
             isShell ? sparseForCurvature(object) : ""};
 }
 
@@ -217,7 +222,11 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
     if (q.strays > 0)
         said.push_back(counted(q.strays, "point", "lies", "lie") +
                        std::string(" far from all others: strays count in the extent, and little is felt there"));
-    if (q.border > 0) said.push_back("at borders and holes the sheet goes on with the stiffness of the nearest points");
+    if (r.closed > 0)
+        said.push_back("the sheet ends at borders and holes; gaps up to " + metres(r.closed) +
+                       " wide are taken for sheet: five spacings, of the points or of half a cell");
+    else if (q.border > 0)
+        said.push_back("at borders and holes the sheet goes on with the stiffness of the nearest points");
     if (q.sided < 0.995) said.push_back(onSides(r));
     if (r.rounding > kStep * q.spacing.typical)
         said.push_back("the coordinates are rounded to steps of " + metres(r.rounding) + ", " +
@@ -255,6 +264,7 @@ nlohmann::json jsonOf(const QualityReport& r)
             {"footprint_radius", r.fingertip},
             {"points_under_footprint", q.pointsUnder(r.fingertip)},
             {"window", r.window},
+            {"closed_gap", r.closed > 0 ? nlohmann::json(r.closed) : nlohmann::json(nullptr)},
             {"dent_lengths",
              r.dents ? nlohmann::json{{"min", r.dents->least}, {"median", r.dents->typical}, {"max", r.dents->most}}
                      : nlohmann::json(nullptr)},

@@ -28,9 +28,10 @@ struct QualityReport {
     SideSources  sides;
     double       rounding  = 0; ///< step of the file's coordinates [m]
     double       fingertip = 0; ///< radius [m]
-    double       window    = 0; ///< edge of the patch window [m]
+    double       window    = 0; ///< edge of what bends: the patch window, or an object that it spans [m]
     double       size      = 0; ///< diagonal of the object's bounds [m]
-    std::string  refusal{};     ///< why nothing of it is touched; empty if it is
+    double       closed = 0; ///< width up to which gaps of an object that the window spans are closed [m]; 0: no such
+    std::string  refusal{};  ///< why nothing of it is touched; empty if it is
     /// Over which dents die away by themselves; empty: they do not, or the theory is not a shell's.
     std::optional<DentLengths> dents{};
     std::string                whyWindow{}; ///< whyDentWindow()
