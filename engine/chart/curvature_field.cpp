@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <iterator>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Dense>
@@ -352,6 +355,40 @@ std::optional<double> radiusFor(const PatchWindow& window, const Frame& frame, c
     return std::clamp(wanted, least, most);
 }
 
+/// Returns the curvature that a fiftieth of the surface exceeds [1/m], without what noise makes of it.
+/// \param error  that noise makes of a fit [1/m]
+double sharpOf(const std::vector<CurvatureSite>& sites, const Frame& frame, double error)
+{
+    constexpr double kRest = 0.02, kDeviations = 3; // [1]; a fiftieth of normal numbers exceeds 2.3 of them
+    std::vector<std::pair<double, double>> found;   // curvature [1/m], share of the surface [1]
+    double                                 all = 0;
+    for (const CurvatureSite& site : sites) {
+        const double share = site.share * site.here.sure * site.here.sure;
+        found.emplace_back(inChart(site.here, frame).largest(), share);
+        all += share;
+    }
+    std::ranges::sort(found, std::greater());
+    double left = kRest * all, sharp = 0;
+    for (const auto& [curvature, share] : found) {
+        sharp = curvature;
+        if ((left -= share) < 0) break;
+    }
+    return std::sqrt(std::max(0.0, sharp * sharp - kDeviations * kDeviations * error * error));
+}
+
+/// Returns the radius of fits for what is most curved in a wide window [m]; infinite where nothing is curved more than
+/// noise says.
+double radiusForSharp(const Frame& frame, const CurvatureSites& sites, const CurvatureSettings& settings)
+{
+    constexpr double kWantedOfSharp = 0.06; // error over that curvature [1]
+    const double     cube           = kFitNoiseError * settings.noise * settings.spacing;
+    const double     least          = std::max(kLeastSpacings * settings.spacing, std::cbrt(cube / kSurveyError));
+    const int        rung           = int(std::ceil(rungOf(least)));
+    const double     sharp          = sharpOf(sites(rung, FitsFor::field), frame, cube / std::pow(rungRadius(rung), 3));
+    if (!(sharp > 0)) return std::numeric_limits<double>::infinity();
+    return std::max({least, settings.lengthRoot / std::sqrt(sharp), std::cbrt(cube / (kWantedOfSharp * sharp))});
+}
+
 /// A place along one axis of the lattice: weights of four nodes.
 struct Along {
     int                   first = 0;
@@ -449,8 +486,9 @@ std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Fr
                                              const CurvatureSettings& settings)
 {
     PALP_EXPECT(settings.spacing > 0, std::to_string(settings.spacing) + " m between the points");
-    const auto wanted = radiusFor(window, frame, sites, settings);
+    auto wanted = radiusFor(window, frame, sites, settings);
     if (!wanted) return {};
+    if (settings.isWide) wanted = std::min(*wanted, radiusForSharp(frame, sites, settings));
     // Of what is hardly curved fits would be as wide as may be, and wider than a narrow object, which then decides
     // nothing.
     for (double radius = *wanted;; radius /= 2) {

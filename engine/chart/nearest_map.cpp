@@ -360,8 +360,8 @@ struct Axis {
     return int(std::clamp(std::ceil(rows), double(kLeastRows), double(kMostRows)));
 }
 
-/// Searches within the square root of `farthest2` [m^2] for the nodes whose best offer is not within that of `settled2`;
-/// every node's answer is the next one's first guess.
+/// Searches within the square root of `farthest2` [m^2] for the nodes whose best offer is not within that of
+/// `settled2`; every node's answer is the next one's first guess.
 void searchBeyond(double settled2, double farthest2, const Buckets& buckets, const Offers& offers,
                   std::vector<std::uint32_t>& nearest)
 {

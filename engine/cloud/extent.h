@@ -12,8 +12,8 @@ struct Extent {
                        ///< most sqrt 2 times `across` [m]
 };
 
-/// Finds the largest distance by going to the farthest point from the last such point, some times: of all but odd shapes
-/// that finds it, and never less than 0.57 of it.
+/// Finds the largest distance by going to the farthest point from the last such point, some times: of all but odd
+/// shapes that finds it, and never less than 0.57 of it.
 /// \param spacings  [m] by point: each point spreads by the area that it stands for; empty: all alike
 [[nodiscard]] Extent extentOf(std::span<const glm::dvec3> points, std::span<const double> spacings);
 

@@ -76,9 +76,9 @@ std::string tooDeep(double sag, bool bulges)
                   "support range");
 }
 
-/// Says that an object that bends as a whole is deep. Cups of 100 x 40 mm that are held at one end and sag 13 and 7 % of
-/// their length are felt 8 and 2 % stiffer than bricks by CalculiX; gutters, dishes, and domes that are held all round,
-/// within 5 %, which sag up to 28 %.
+/// Says that an object that bends as a whole is deep. Cups of 100 x 40 mm that are held at one end and sag 13 and 7 %
+/// of their length are felt 8 and 2 % stiffer than bricks by CalculiX; gutters, dishes, and domes that are held all
+/// round, within 5 %, which sag up to 28 %.
 constexpr double kMostSagOfWhole = 0.1; // of what is curved both ways and held at one place [1]
 std::string      tooDeepAsAWhole(double sag)
 {

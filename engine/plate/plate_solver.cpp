@@ -55,8 +55,8 @@ double looseFor(double tolerance)
 
 /// What the thrusts of a shell take off its answers. Each is solved for alone, in doubles: what is left of a work may
 /// be a fiftieth of it, and several loads together may stop after a step. Where what an answer leaves of its load does
-/// much of a work along it, the solver was wrong about itself: its matrix is indefinite, and an estimate by energies may
-/// miss what cancels (a strip was felt a third too soft, and called converged).
+/// much of a work along it, the solver was wrong about itself: its matrix is indefinite, and an estimate by energies
+/// may miss what cancels (a strip was felt a third too soft, and called converged).
 class ThrustAnswers {
 public:
     ThrustAnswers(MultigridShellSolver& solver, const Shell& shell, double tolerance) : thrusts_(shell)

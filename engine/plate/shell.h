@@ -43,8 +43,8 @@ struct Shell {
 /// ratio is -nu.
 [[nodiscard]] Plate membraneOf(const Shell& shell);
 
-/// Returns how much of a sheet there is at the nodes, where an object ends in the window [1]: D C, a length squared that
-/// is the same all over a sheet of one thickness, over its largest value. Empty: it does not end there.
+/// Returns how much of a sheet there is at the nodes, where an object ends in the window [1]: D C, a length squared
+/// that is the same all over a sheet of one thickness, over its largest value. Empty: it does not end there.
 [[nodiscard]] NodeField sharesOfSheet(const Shell& shell);
 
 /// Returns whether phi is held by no side and no bed: it is then known but for a linear function, which carries no

@@ -37,8 +37,8 @@ public:
     /// Solves for where the touch will be a lead later. If that is off the object, or the points determine no
     /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     ///
-    /// Of an object that the window spans, the last answer holds for what is touched within half the reach of its table:
-    /// the object bends in the same way wherever it is touched, and the table has its answers there.
+    /// Of an object that the window spans, the last answer holds for what is touched within half the reach of its
+    /// table: the object bends in the same way wherever it is touched, and the table has its answers there.
     ///
     /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
     /// for its place. Where the surface is too far away, or has no answer there, there is no update and no reason.

@@ -258,6 +258,37 @@ TEST(CurvatureField, TheRadiusOfTheFitsIsAsSmallAsNoiseAndShellPermit)
     EXPECT_NEAR(radiusOf(20, {.noise = 0.3e-3}), 5 * kSpacing, 1e-12) << "more than the most, if that is less";
 }
 
+/// A plane but for a part of it, by fits that noise makes wrong, of either sign in turn.
+TEST(CurvatureField, InAWideWindowTheRadiusSuitsTheMostCurvedFiftieth)
+{
+    constexpr double kRoot    = 0.03; // [m^(1/2)]
+    const auto       radiusOf = [&](double lump, double part, double noise, bool isWide) {
+        const auto sites = [&](int rung, FitsFor) {
+            const double               error = kFitNoiseError * noise * kSpacing / std::pow(rungRadius(rung), 3);
+            std::vector<CurvatureSite> all;
+            for (int i = 0; i < 40; ++i)
+                for (int j = 0; j < 40; ++j) {
+                    const double bend = (i * 40 + j < part * 1600 ? lump : 0) + ((i + j) % 2 == 0 ? error : -error);
+                    all.push_back({{(i - 20) * 1e-3, (j - 20) * 1e-3}, {Frame{}.normal, glm::dmat3(bend)}});
+                }
+            return all;
+        };
+        const CurvatureSettings settings{
+                  .spacing = kSpacing, .noise = noise, .mostRadius = 30e-3, .lengthRoot = kRoot, .isWide = isWide};
+        return curvatureField(windowAt(0), Frame{}, sites, settings).value().radius;
+    };
+    const double felt = kRoot / std::sqrt(20);
+    ASSERT_GT(felt, 5 * kSpacing);
+    EXPECT_NEAR(radiusOf(20, 0.03, 0, true), felt, 1e-9);
+    EXPECT_GT(radiusOf(20, 0.03, 0, false), 1.5 * felt) << "of what is typical";
+    EXPECT_EQ(radiusOf(20, 0.01, 0, true), radiusOf(20, 0.01, 0, false)) << "less than a fiftieth";
+    EXPECT_EQ(radiusOf(0, 0, 0.2e-3, true), radiusOf(0, 0, 0.2e-3, false)) << "noise is no lump";
+    const double noise = 0.1e-3, cube = kFitNoiseError * noise * kSpacing;
+    // What noise adds to a curvature, and what is taken off for it, are some 6 % here, and a third of that counts.
+    EXPECT_NEAR(radiusOf(10, 0.1, noise, true) / std::cbrt(cube / (0.06 * 10)), 1, 0.03) << "6 % of the lump";
+    EXPECT_NEAR(radiusOf(40, 0.1, noise, true) / std::cbrt(cube / 1.2), 1, 1e-9) << "1.2 1/m elsewhere";
+}
+
 TEST(CurvatureField, WhatGrowsEvenlyIsFoundUpToTheSidesOfTheWindow)
 {
     const auto bend  = [](double x, double z) { return 50 + 1000 * x + 500 * z; }; // [1/m]

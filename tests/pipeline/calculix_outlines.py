@@ -73,11 +73,17 @@ def vault(x, z):
     return -5 * x * x
 
 
+def lump(height, width, x0=0.0):
+    return lambda x, z: height * math.exp(-((x - x0) ** 2 + z * z) / (2 * width * width))
+
+
 U = [Box(-0.024, -0.007, 0.024, 0.007), Box(-0.024, -0.007, -0.010, 0.05), Box(0.010, -0.007, 0.024, 0.05)]
 L = [Box(-0.007, -0.007, 0.04, 0.007), Box(-0.007, -0.007, 0.007, 0.04)]
 ENDS = [Box(-0.05, -0.01, -0.032, 0.01), Box(0.032, -0.01, 0.05, 0.01)]
 SPOTS = [Box(-0.04, 0.018, -0.02, 0.034), Box(0.02, 0.018, 0.04, 0.034)]
 HOLES = [Disc(0.018 * math.cos(n * math.pi / 6), 0.018 * math.sin(n * math.pi / 6), 3e-3) for n in range(12)]
+PANEL = [Box(-0.04, -0.03, 0.04, 0.03)]
+SIDES = [Box(-0.05, -0.04, -0.034, 0.04), Box(0.034, -0.04, 0.05, 0.04)]
 OUTLINES = [
     Outline("u dome", dome, U, [Box(-0.03, 0.042, 0.03, 0.06)]),
     Outline("u vault", vault, U, [Box(-0.03, 0.042, 0.03, 0.06)]),
@@ -85,6 +91,10 @@ OUTLINES = [
     Outline("strip dome", dome, [Box(-0.04, -0.007, 0.04, 0.007)], ENDS),
     Outline("ring dome", dome, [Disc(0, 0.026, 0.032)], SPOTS, [Disc(0, 0.026, 0.02)]),
     Outline("holes dome", dome, [Disc(0, 0, 0.04)], [Beyond(0, 0, 0.032)], HOLES),
+    Outline("gentle lump", lump(2e-3, 10e-3), PANEL, SIDES),
+    Outline("steep lump", lump(2e-3, 5e-3), PANEL, SIDES),
+    Outline("small lump", lump(1e-3, 4e-3), PANEL, SIDES),
+    Outline("beside a lump", lump(2e-3, 8e-3, 0.012), PANEL, SIDES),
 ]
 
 

@@ -19,7 +19,8 @@
 namespace palp {
 namespace {
 
-using Where = std::function<bool(double, double)>; // [m]
+using Where  = std::function<bool(double, double)>;   // [m]
+using Height = std::function<double(double, double)>; // [m] of [m]
 
 Where box(double x0, double z0, double x1, double z1)
 {
@@ -38,8 +39,13 @@ bool isInOne(const std::vector<Where>& of, double x, double z)
 
 struct Outline {
     std::vector<Where> pieces, held, holes{};
-    bool               isVault = false; ///< else a dome
+    Height             height = [](double x, double z) { return -5 * (x * x + z * z); };
 };
+
+Height lump(double height, double width, double x0 = 0)
+{
+    return [=](double x, double z) { return height * std::exp(-((x - x0) * (x - x0) + z * z) / (2 * width * width)); };
+}
 
 Outline outlineOf(std::string_view name)
 {
@@ -47,7 +53,15 @@ Outline outlineOf(std::string_view name)
         return {{box(-24e-3, -7e-3, 24e-3, 7e-3), box(-24e-3, -7e-3, -10e-3, 50e-3), box(10e-3, -7e-3, 24e-3, 50e-3)},
                 {box(-30e-3, 42e-3, 30e-3, 60e-3)},
                 {},
-                name == "u vault"};
+                name == "u vault" ? Height([](double x, double) { return -5 * x * x; }) : Outline{}.height};
+    if (name.ends_with("lump"))
+        return {{box(-40e-3, -30e-3, 40e-3, 30e-3)},
+                {box(-50e-3, -40e-3, -34e-3, 40e-3), box(34e-3, -40e-3, 50e-3, 40e-3)},
+                {},
+                name == "gentle lump"  ? lump(2e-3, 10e-3)
+                : name == "steep lump" ? lump(2e-3, 5e-3)
+                : name == "small lump" ? lump(1e-3, 4e-3)
+                                       : lump(2e-3, 8e-3, 12e-3)};
     if (name == "l dome")
         return {{box(-7e-3, -7e-3, 40e-3, 7e-3), box(-7e-3, -7e-3, 7e-3, 40e-3)},
                 {box(32e-3, -10e-3, 50e-3, 10e-3), box(-10e-3, 32e-3, 10e-3, 50e-3)}};
@@ -67,8 +81,7 @@ Outline outlineOf(std::string_view name)
 }
 
 /// Points half a millimetre apart, each anywhere in its square.
-/// \param bend  [1/m]
-SoftObject objectOf(const Outline& outline, unsigned seed, double bend = 10)
+SoftObject objectOf(const Outline& outline, unsigned seed)
 {
     constexpr double                       kSpacing = 0.5e-3, kReach = 62e-3; // [m]
     std::mt19937_64                        bits(seed);
@@ -79,7 +92,7 @@ SoftObject objectOf(const Outline& outline, unsigned seed, double bend = 10)
         for (double j = -kReach; j < kReach; j += kSpacing) {
             const double x = i + within(bits), z = j + within(bits);
             if (!isInOne(outline.pieces, x, z) || isInOne(outline.holes, x, z)) continue;
-            points.emplace_back(x, z, -bend / 2 * (x * x + (outline.isVault ? 0 : z * z)));
+            points.emplace_back(x, z, outline.height(x, z));
             held.push_back(isInOne(outline.held, x, z));
         }
     std::vector<double> moduli(points.size(), 1e6);
@@ -90,21 +103,22 @@ SoftObject objectOf(const Outline& outline, unsigned seed, double bend = 10)
 
 /// With a bed of Airy's function that begins at the border, and with a hold that begins where the first share is held,
 /// they were felt 5 to 18 % too stiff at 256 cells, and less so the finer the cells. With a free side of the window the
-/// U was felt 30 % too stiff.
+/// U was felt 30 % too stiff. By fits as wide as suit the panel the lumps were felt 40, 29, 11 and 7 % too soft.
 TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
 {
     PlateSolver host("host");
     for (const CalculixOutline& of : kCalculixOutlines)
         for (const int cells : {256, 512}) {
             PatchSettings settings{.theory = Theory::shell};
-            settings.windowOf = WindowOf::object;
-            settings.cells    = cells;
-            const Patch patch = deform(objectOf(outlineOf(of.name), 1), {{0, 0, 0}, {0, 0, 1}}, settings, host);
+            settings.windowOf     = WindowOf::object;
+            settings.cells        = cells;
+            const Outline outline = outlineOf(of.name);
+            const Patch patch = deform(objectOf(outline, 1), {{0, 0, outline.height(0, 0)}, {0, 0, 1}}, settings, host);
             EXPECT_TRUE(patch.report.converged);
             const double felt = 1 / (patch.compliance * of.stiffness) - 1;
             std::printf("  %s, %d cells: %+.1f %%, %s\n", std::string(of.name).c_str(), cells, 100 * felt,
                         patch.report.solver.c_str());
-            EXPECT_LT(of.meshError, 0.01) << of.name;
+            EXPECT_LT(of.meshError, 0.012) << of.name;
             EXPECT_NEAR(felt, 0, 0.05) << of.name << ", " << cells << " cells";
         }
 }
@@ -115,13 +129,15 @@ TEST(CalculixOutlines, AGapIsNotBridged)
 {
     const Outline hairpin{
         {box(-10e-3, -10e-3, 10e-3, -2e-3), box(-10e-3, -10e-3, -4e-3, 40e-3), box(4e-3, -10e-3, 10e-3, 40e-3)},
-        {box(-12e-3, 32e-3, -2e-3, 42e-3)}};
+        {box(-12e-3, 32e-3, -2e-3, 42e-3)},
+        {},
+        [](double, double) { return 0; }};
     constexpr double kHairpin = 0.0411; // [N/m] CalculiX, bricks of 1 mm: right to 0.5 %
     for (const Theory theory : {Theory::plate, Theory::shell}) {
         PatchSettings settings{.theory = theory};
         settings.windowOf = WindowOf::object;
         PlateSolver host("host");
-        const Patch patch = deform(objectOf(hairpin, 1, 0), {{7e-3, 30e-3, 0}, {0, 0, 1}}, settings, host);
+        const Patch patch = deform(objectOf(hairpin, 1), {{7e-3, 30e-3, 0}, {0, 0, 1}}, settings, host);
         std::printf("  hairpin: %+.1f %%\n", 100 / (patch.compliance * kHairpin) - 100);
         EXPECT_NEAR(1 / (patch.compliance * kHairpin), 1, 0.2);
     }

@@ -97,7 +97,8 @@ std::optional<CurvatureField> findCurvature(const Patch& patch, const SoftObject
                           {.spacing    = patch.spacing,
                            .noise      = noiseOf(object, points),
                            .mostRadius = settings.window / 2,
-                           .lengthRoot = shellLengthRoot(object.material())});
+                           .lengthRoot = shellLengthRoot(object.material()),
+                           .isWide     = settings.windowOf == WindowOf::object});
 }
 
 /// Fills in what the membrane gives way by.

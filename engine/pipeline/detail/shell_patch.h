@@ -21,8 +21,8 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
 [[nodiscard]] Shell shellOf(const Patch& patch);
 
 /// Returns the edges of the membrane that go with a window's edges: a free one is a border of the object, where no
-/// force crosses it; a supported one cuts the window from a larger body; a clamped one holds it in its plane as well, as
-/// does a supported one among three clamped ones.
+/// force crosses it; a supported one cuts the window from a larger body; a clamped one holds it in its plane as well,
+/// as does a supported one among three clamped ones.
 [[nodiscard]] PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept;
 
 } // namespace palp

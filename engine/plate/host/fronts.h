@@ -84,8 +84,8 @@ struct FrontAtWork {
     int   ownEnd, borderEnd; ///< rows that own columns and those of the border have, whole vectors
 };
 
-/// Eliminates a front's own unknowns: with P = L S L', S the signs of the pivots, its own columns become L and B L^-' S;
-/// what is left of C is at its end.
+/// Eliminates a front's own unknowns: with P = L S L', S the signs of the pivots, its own columns become L and B L^-'
+/// S; what is left of C is at its end.
 /// \param least    returns the size of a pivot of which rounding leaves nothing, by own unknown
 /// \param inverse  becomes 1 / L of the diagonal, by own unknown, times its sign
 /// \return whether rounding leaves something of each pivot

@@ -72,9 +72,9 @@ Which onSheet(const Shell& shell)
     return sheet;
 }
 
-/// Returns the nodes that terms of the sheet's own energy reach, and those beside which there is stress: a curvature that
-/// ends where a stress does not loads it by the deflection itself, not by its second differences (a gutter that is held
-/// at one end was felt four times too stiff).
+/// Returns the nodes that terms of the sheet's own energy reach, and those beside which there is stress: a curvature
+/// that ends where a stress does not loads it by the deflection itself, not by its second differences (a gutter that is
+/// held at one end was felt four times too stiff).
 Which withDeflection(const PlateGrid& grid, const Which& sheet, const Which& stressed)
 {
     Which some = stressed;
@@ -357,8 +357,8 @@ void DirectShell::Impl::number()
     signs.resize(std::size_t(unknowns), -1);
 }
 
-/// Makes fronts of unknowns of those of nodes. A thrust stretches all of the sheet: it is on each front's border, and an
-/// unknown of the last front.
+/// Makes fronts of unknowns of those of nodes. A thrust stretches all of the sheet: it is on each front's border, and
+/// an unknown of the last front.
 void DirectShell::Impl::divide()
 {
     const auto                    nodes     = division.nodes();

@@ -12,8 +12,8 @@
 namespace palp {
 
 /// Solves for loads on an object that ends in its window by a factor of its whole matrix, on the host and in doubles.
-/// Multigrid needs 25 to 200 steps for such shells, and some it does not solve: what lies beyond a border has next to no
-/// rigidity, or it bridges gaps, and the sheet's thrusts cancel most of an answer.
+/// Multigrid needs 25 to 200 steps for such shells, and some it does not solve: what lies beyond a border has next to
+/// no rigidity, or it bridges gaps, and the sheet's thrusts cancel most of an answer.
 ///
 /// A factor needs nothing beyond a border. Nodes there are left out, but for those that a term of the sheet's energy
 /// reaches, and the terms that need others with them: the border is free, and nothing bridges a gap.
