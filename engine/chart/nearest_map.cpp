@@ -360,13 +360,15 @@ struct Axis {
     return int(std::clamp(std::ceil(rows), double(kLeastRows), double(kMostRows)));
 }
 
-/// Searches within the square root of `farthest2` [m^2] for the nodes whose best offer is not within that of
-/// `settled2`; every node's answer is the next one's first guess.
-void searchBeyond(double settled2, double farthest2, const Buckets& buckets, const Offers& offers,
+/// Searches for the nodes whose best offer is not within the square root of `settled2` [m^2]; every node's answer is
+/// the next one's first guess. Farther than the square root of `exact2` from all points, only some nodes are searched
+/// for.
+void searchBeyond(double settled2, double exact2, const Buckets& buckets, const Offers& offers,
                   std::vector<std::uint32_t>& nearest)
 {
-    const auto  columns = std::size_t(offers.grid.nodesZ());
-    std::size_t node    = 0;
+    constexpr int kSome   = 4; // one in four along each axis: what is narrower may be lost
+    const auto    columns = std::size_t(offers.grid.nodesZ());
+    std::size_t   node    = 0;
     for (int i = 0; i < offers.grid.nodesX(); ++i) {
         const double* distances2 = offers.distances2(i);
         for (int j = 0; j < offers.grid.nodesZ(); ++j, ++node) {
@@ -379,7 +381,8 @@ void searchBeyond(double settled2, double farthest2, const Buckets& buckets, con
             };
             if (j > 0) consider(nearest[node - 1]);
             if (i > 0) consider(nearest[node - columns]);
-            nearest[node] = buckets.nearest(place, guess, farthest2);
+            const bool isOne = i % kSome == 0 && j % kSome == 0;
+            nearest[node]    = buckets.nearest(place, guess, isOne ? std::numeric_limits<double>::infinity() : exact2);
         }
     }
 }
@@ -397,20 +400,18 @@ void takeFromNeighbours(const Buckets& buckets, const Offers& offers, std::vecto
         const std::uint32_t beside = nearest[std::size_t(fromI * columns + fromJ)];
         if (buckets.squaredDistance(place, beside) < buckets.squaredDistance(place, own)) own = beside;
     };
-    for (int pass = 0; pass < 2; ++pass) { // the second one reaches what lies before the first point
-        for (int i = 0; i < rows; ++i)
-            for (int j = 0; j < columns; ++j) {
-                if (!is[std::size_t(i * columns + j)]) continue;
-                consider(i, j, i - 1, j);
-                consider(i, j, i, j - 1);
-            }
-        for (int i = rows - 1; i >= 0; --i)
-            for (int j = columns - 1; j >= 0; --j) {
-                if (!is[std::size_t(i * columns + j)]) continue;
-                consider(i, j, i + 1, j);
-                consider(i, j, i, j + 1);
-            }
-    }
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) {
+            if (!is[std::size_t(i * columns + j)]) continue;
+            for (const int beside : {-1, 0, 1}) consider(i, j, i - 1, j + beside);
+            consider(i, j, i, j - 1);
+        }
+    for (int i = rows - 1; i >= 0; --i)
+        for (int j = columns - 1; j >= 0; --j) {
+            if (!is[std::size_t(i * columns + j)]) continue;
+            for (const int beside : {-1, 0, 1}) consider(i, j, i + 1, j + beside);
+            consider(i, j, i, j + 1);
+        }
 }
 
 } // namespace
@@ -448,10 +449,7 @@ std::vector<std::uint32_t> nearestPoint(const PlateGrid& grid, const ChartPoint&
     const double     width = std::sqrt(kPointsPerBucket * (x.high - x.low) * (z.high - z.low) / double(points.size()));
     const Buckets    buckets(points, x.bands(width, points.size()), z.bands(width, points.size()));
     searchBeyond(settled2, exact * exact, buckets, offers, nearest);
-    if (!std::isfinite(exact)) return nearest;
-    takeFromNeighbours(buckets, offers, nearest);
-    if (std::ranges::find(nearest, kNoPoint) != nearest.end()) // all points are far from the grid
-        searchBeyond(settled2, std::numeric_limits<double>::infinity(), buckets, offers, nearest);
+    if (std::isfinite(exact)) takeFromNeighbours(buckets, offers, nearest);
     return nearest;
 }
 

@@ -113,7 +113,7 @@ DeformationAnswer Deformation::keptFor(const Contact& contact, const Touch& touc
     Patch patch                              = kept_->patch;
     patch.contact                            = contact;
     patch.times                              = {};
-    return {slot, std::move(patch), {}};
+    return {slot, std::move(patch), {}, {}, true};
 }
 
 DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touch)
@@ -132,8 +132,9 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         update.errorEstimate  = patch.report.errorEstimate.value_or(0);
         update.iterations     = patch.report.iterations.value_or(0);
         update.shape          = depthShapeOf(patch);
-        if (settings_.windowOf == WindowOf::object) kept_ = {update, patch};
-        return {slot, std::move(patch), {}};
+        const bool lasts      = settings_.windowOf == WindowOf::object;
+        if (lasts) kept_ = {update, patch};
+        return {slot, std::move(patch), {}, {}, lasts};
     } catch (const Error& error) { // the window is off the object, or the plate has no solution there
         return {{}, {}, error.what()};
     }

@@ -15,10 +15,11 @@ namespace palp {
 struct DeformationAnswer {
     /// For the servo, where the solver wrote it; null: nothing could be solved there. It stays as it is as long as
     /// somebody has a share in it, also beyond the life of the deformation. The servo's thread takes no share.
-    std::shared_ptr<const PatchUpdate> update;
-    std::optional<Patch>               patch;      ///< for an observer; there whenever `update` is
-    std::string                        why;        ///< a failure, also one that a second try mended; may be empty
-    std::string                        takeover{}; ///< who solves plates now, and why; empty: who did before
+    std::shared_ptr<PatchUpdate> update;
+    std::optional<Patch>         patch;         ///< for an observer; there whenever `update` is
+    std::string                  why;           ///< a failure, also one that a second try mended; may be empty
+    std::string                  takeover{};    ///< who solves plates now, and why; empty: who did before
+    bool                         lasts = false; ///< however long it took it is as good as new
 };
 
 /// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of

@@ -120,9 +120,7 @@ void backwardFront(const RimFront& f, const double* columns, Eight* y)
 }
 
 /// Solves for all unknowns x in place.
-/// \param needed  by front: those that have a force, and all that hold their borders; the others' x mean nothing.
-///                Null: all fronts
-void solveFronts(const ShellFronts& all, Eight* x, const std::uint8_t* needed)
+void solveFronts(const ShellFronts& all, Eight* x)
 {
     static thread_local Scratch<Eight> scratch;
     Eight* const                       y    = scratch.of(all.mostRows);
@@ -131,7 +129,6 @@ void solveFronts(const ShellFronts& all, Eight* x, const std::uint8_t* needed)
         for (int m = 0; m < f.border; ++m) y[f.own + m] = x[all.borders[f.borderAt + m]];
     };
     for (int n = 0; n < all.frontCount; ++n) {
-        if (needed && !needed[n]) continue;
         const RimFront& f = all.fronts[n];
         take(f);
         forwardFront(f, all.columns + f.columnsAt, y);
@@ -139,7 +136,6 @@ void solveFronts(const ShellFronts& all, Eight* x, const std::uint8_t* needed)
         for (int m = 0; m < f.border; ++m) x[all.borders[f.borderAt + m]] = y[f.own + m];
     }
     for (int n = all.frontCount - 1; n >= 0; --n) {
-        if (needed && !needed[n]) continue;
         const RimFront& f = all.fronts[n];
         take(f);
         backwardFront(f, all.columns + f.columnsAt, y);
@@ -156,7 +152,7 @@ void shellFrontFactor(const HostDispatch& d)
 
 void shellFrontSolve(const HostDispatch& d)
 {
-    solveFronts(*bound<const ShellFronts>(d, 0), bound<Eight>(d, 1), bound<const std::uint8_t>(d, 2));
+    solveFronts(*bound<const ShellFronts>(d, 0), bound<Eight>(d, 1));
 }
 
 } // namespace palp::PALPATE_ISA

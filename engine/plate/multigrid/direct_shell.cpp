@@ -62,13 +62,11 @@ Which withStress(const Shell& shell)
     return widened(grid, loose, 1);
 }
 
-/// Returns the nodes at which there is something of the sheet.
-Which onSheet(const Shell& shell)
+/// Returns the nodes at which there is more than a share of the sheet.
+Which onSheet(const NodeField& shares, double more)
 {
-    constexpr double kNothing = 1e-5; // share of a sheet that is none [1]
-    const NodeField  shares   = sharesOfSheet(shell);
-    Which            sheet(shares.values().size());
-    for (std::size_t n = 0; n < sheet.size(); ++n) sheet[n] = shares.values()[n] > kNothing;
+    Which sheet(shares.values().size());
+    for (std::size_t n = 0; n < sheet.size(); ++n) sheet[n] = shares.values()[n] > more;
     return sheet;
 }
 
@@ -265,6 +263,8 @@ struct DirectShell::Impl {
     Which              knownW;   ///< nodes with a deflection, those that a side holds included
     Which              sheet;    ///< nodes with something of the sheet
     Which              stressed; ///< nodes with a stress function
+    Which isOwnSheet; ///< nodes of the sheet, by which errors are judged: what is nearly loose at a ragged border may
+                      ///< be anywhere, and is felt by nobody
 
     Rim                         division;
     std::vector<int>            ofW, ofPhi; ///< unknown by node, or kNone
@@ -273,7 +273,7 @@ struct DirectShell::Impl {
     double                      phiUnit     = 1; ///< phi over the unknown [N]
     std::vector<double>         signs;
     std::vector<RimFront>       fronts;
-    std::vector<int>            borders, frontOf; ///< frontOf: by unknown
+    std::vector<int>            borders;
     std::vector<std::ptrdiff_t> starts;
     std::vector<int>            rows;
     std::vector<double>         values, columns, numbers; ///< numbers: of eight loads at each unknown
@@ -311,9 +311,12 @@ DirectShell::Impl::Impl(const Shell& given, std::span<const Footprint> footprint
 {
     const auto began = Clock::now();
     if (const auto why = whyUnsolvable(shell)) throw Error("the shell cannot be solved: " + *why);
-    stressed = withStress(shell);
-    sheet    = onSheet(shell);
-    knownW   = hangingTogether(shell.bending.grid, withDeflection(shell.bending.grid, sheet, stressed), footprints);
+    constexpr double kNothing = 1e-5, kSome = 0.1; // shares of a sheet [1]
+    const NodeField  shares = sharesOfSheet(shell);
+    stressed                = withStress(shell);
+    sheet                   = onSheet(shares, kNothing);
+    isOwnSheet              = onSheet(shares, kSome);
+    knownW = hangingTogether(shell.bending.grid, withDeflection(shell.bending.grid, sheet, stressed), footprints);
     for (std::size_t n = 0; n < knownW.size(); ++n) {
         stressed[n] = stressed[n] && knownW[n];
         sheet[n]    = sheet[n] && knownW[n];
@@ -378,7 +381,6 @@ void DirectShell::Impl::divide()
     const int      thrusts  = unknowns - firstThrust;
     std::ptrdiff_t entries  = 0;
     int            mostRows = kLoadsTogether;
-    frontOf.resize(std::size_t(unknowns));
     for (std::size_t f = 0; f < ofFronts.size(); ++f) {
         const RimFront& of     = ofFronts[f];
         const bool      isLast = f + 1 == ofFronts.size();
@@ -397,7 +399,6 @@ void DirectShell::Impl::divide()
         const int high   = whole(front.own + front.border);
         mostRows         = std::max(mostRows, high);
         entries += std::ptrdiff_t(high) * front.own;
-        std::fill_n(frontOf.begin() + front.first, front.own, int(f));
         fronts.push_back(front);
     }
     columns.resize(std::size_t(entries) + kLoadsTogether);
@@ -482,7 +483,7 @@ void DirectShell::Impl::factor()
 
 void DirectShell::Impl::backSubstitute()
 {
-    callHost(kernels.shellFrontSolve, 0, {&view, numbers.data(), nullptr});
+    callHost(kernels.shellFrontSolve, 0, {&view, numbers.data()});
 }
 
 std::vector<double> DirectShell::Impl::left(const std::vector<double>& forces, const std::vector<double>& x) const
@@ -524,13 +525,14 @@ bool DirectShell::Impl::solveEight(std::span<const Footprint> footprints, bool r
     std::vector<double> x = numbers;
     numbers               = left(forces, x);
     backSubstitute();
+    for (std::size_t n = 0; n < x.size(); ++n) numbers[n] += x[n];
     std::array<double, kLoadsTogether> corrections{}, sizes{};
-    for (std::size_t n = 0; n < x.size(); ++n) {
-        const std::size_t lane = n % kLoadsTogether;
-        corrections[lane]      = std::max(corrections[lane], std::abs(numbers[n]));
-        numbers[n] += x[n];
-        sizes[lane] = std::max(sizes[lane], std::abs(numbers[n]));
-    }
+    for (std::size_t node = 0; node < ofW.size(); ++node)
+        for (std::size_t lane = 0; isOwnSheet[node] && ofW[node] != kNone && lane < kLoadsTogether; ++lane) {
+            const std::size_t n = std::size_t(ofW[node]) * kLoadsTogether + lane;
+            corrections[lane]   = std::max(corrections[lane], std::abs(numbers[n] - x[n]));
+            sizes[lane]         = std::max(sizes[lane], std::abs(numbers[n]));
+        }
     for (std::size_t lane = 0; lane < footprints.size(); ++lane)
         if (!(corrections[lane] <= worst * sizes[lane])) worst = corrections[lane] / sizes[lane];
     return std::isfinite(worst);

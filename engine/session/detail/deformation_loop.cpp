@@ -33,6 +33,8 @@ void DeformationLoop::run(const std::atomic<bool>& over, const std::atomic<Clock
         slow.solve.add(took);
         slow.addPatch(answer.update != nullptr, answer.why);
         if (!answer.update) continue;
+        // One that took longer than a force lives would end it, where one that was kept goes on.
+        if (answer.lasts) answer.update->table.time += took;
         update_.draft() = std::move(answer.update);
         update_.publish();
         patch.draft() = {std::move(answer.patch), took};
