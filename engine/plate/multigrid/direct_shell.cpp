@@ -11,6 +11,7 @@
 #include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
+#include "engine/plate/host/host_kernels.h"
 #include "engine/plate/host/shell_view.h"
 #include "engine/plate/multigrid/detail/host_call.h"
 #include "engine/plate/multigrid/detail/rim.h"
@@ -580,8 +581,8 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
 }
 
 DirectShell::DirectShell(const Shell& shell, std::span<const Footprint> footprints, std::vector<double> memory,
-                         const HostKernels& kernels)
-    : impl_(std::make_unique<Impl>(shell, footprints, std::move(memory), kernels))
+                         const HostKernels* kernels)
+    : impl_(std::make_unique<Impl>(shell, footprints, std::move(memory), kernels ? *kernels : *hostVariant().kernels))
 {
 }
 DirectShell::~DirectShell()                                 = default;

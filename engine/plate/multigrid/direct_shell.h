@@ -5,11 +5,12 @@
 #include <span>
 #include <vector>
 
-#include "engine/plate/host/host_kernels.h"
 #include "engine/plate/plate_solver.h"
 #include "engine/plate/shell.h"
 
 namespace palp {
+
+struct HostKernels;
 
 /// Solves for loads on an object that ends in its window by a factor of its whole matrix, on the host and in doubles.
 /// Multigrid needs 25 to 200 steps for such shells, and some it does not solve: what lies beyond a border has next to
@@ -27,10 +28,11 @@ public:
 
     /// Divides the nodes and makes the factor: 0.1 s for a sheet of 10 000 nodes, on one core.
     /// \param footprints  that press on the piece of sheet to be solved for: another one may be held by nothing
-    /// \param memory       of a factor that is not needed any more: new memory costs as much as a solve
+    /// \param memory      of a factor that is not needed any more: new memory costs as much as a solve
+    /// \param kernels     of an instruction set; null: the best
     /// \throws Error if whyUnsolvable(shell)
     DirectShell(const Shell& shell, std::span<const Footprint> footprints, std::vector<double> memory = {},
-                const HostKernels& kernels = *hostVariant().kernels);
+                const HostKernels* kernels = nullptr);
     ~DirectShell();
     DirectShell(DirectShell&&) noexcept;
     DirectShell& operator=(DirectShell&&) noexcept;
