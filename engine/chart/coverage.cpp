@@ -15,7 +15,7 @@ double largestCell(const PlateGrid& grid)
     return std::max(grid.spacingX, grid.spacingZ);
 }
 
-/// Returns the distance of each node from the nearest point [m]; more, where it is more than `exact`.
+/// Returns the distance of each node from the nearest point [m]; perhaps more, where it is more than `exact`.
 NodeField distanceToPoints(const PatchWindow& window, std::span<const ChartPoint> positions, double exact)
 {
     const PlateGrid& grid = window.grid;

@@ -398,7 +398,8 @@ void takeFromNeighbours(const Buckets& buckets, const Offers& offers, std::vecto
         const ChartPoint place{offers.x[std::size_t(i + Offers::kMargin)], offers.z[std::size_t(j + Offers::kMargin)]};
         std::uint32_t&   own       = nearest[std::size_t(i * columns + j)];
         const std::uint32_t beside = nearest[std::size_t(fromI * columns + fromJ)];
-        if (buckets.squaredDistance(place, beside) < buckets.squaredDistance(place, own)) own = beside;
+        if (own == kNoPoint || buckets.squaredDistance(place, beside) < buckets.squaredDistance(place, own))
+            own = beside;
     };
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) {

@@ -35,7 +35,7 @@ struct LocalCompliance {
     double compliance       = 0;     ///< c [m/N]
     double contactStiffness = 0;     ///< k_c [N/m]
     bool   clamped          = false; ///< the contact lies beyond the table's reach, or no table was there yet
-    double age              = 0;     ///< [s] of the contact that the table was solved for; without one, of this contact
+    double age              = 0;     ///< [s] of the contact that the table is for; without one, of this contact
     double curvature        = 0;     ///< [1/m] of the table's chart, see Chart
 
     std::optional<double> stiffening{}; ///< b [1/m]; empty: it is the scene's

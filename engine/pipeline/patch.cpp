@@ -20,6 +20,8 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
     constexpr double kMargin = 1.04, kFinest = 0.25; // lengths to half a side of the window; fingertips to a cell [1]
     constexpr int    kFewest = 256, kMost = 512, kTogether = 16; // cells; a multiple that a multigrid can coarsen
     PatchSettings    settled = settings;
+    if (settings.isSettled) return settled;
+    settled.isSettled = true;
     if (settings.windowOf == WindowOf::dent) {
         settled.windowOf = WindowOf::contact;
         settled.window   = dentWindow(object, settings);

@@ -85,13 +85,14 @@ struct PatchSettings {
     Large         large           = Large::off;
     PlateEdges    edges{}; ///< of the window; of a shell that is cut from a larger body best all supported
     ForceLaw      forceLaw  = ForceLaw::series;
-    double        tolerance = 1e-4; ///< of the plate's solution, relative; see PlateSolver::solve [1]
+    double        tolerance = 1e-4;  ///< of the plate's solution, relative; see PlateSolver::solve [1]
+    bool          isSettled = false; ///< window and cells are those of settledFor()
 };
 
 /// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what
 /// it spans. One of a dent is as dentWindow() says; that takes milliseconds, so settle once before many touches. One
-/// of the object is twice as wide as the object is across, so that it holds all of it about any contact, however it is
-/// turned. Its cells are as wide as `window` and `cells` say, but no finer than a fourth of the fingertip, and 128 of
+/// of the object is twice as wide as the object is across, as far as extentOf() finds that, so that it holds all of it
+/// about any contact, however it is turned. Its cells are as wide as `window` and `cells` say, but no finer than a fourth of the fingertip, and 128 of
 /// them or more, half of `cells`, go into the length of a strip that spreads as far as the object; there are 512 at
 /// most. Its sides, in the void, are free. A second time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);

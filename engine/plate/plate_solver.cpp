@@ -746,10 +746,7 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     FootprintSolution solution;
-    if (auto exact = byFactor(shell, loads, whole, tolerance)) {
-        noteSolvedBy(exact->whole.report.solver);
-        return std::move(*exact);
-    }
+    if (auto exact = byFactor(shell, loads, whole, tolerance)) return std::move(*exact);
     if (processor_) solution = byProcessor(shell, loads, whole, tolerance, drawn);
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
         if (processor_) note_ = stoppedAt(solution.whole.report);
@@ -774,7 +771,7 @@ std::optional<FootprintSolution> PlateSolver::byFactor(const Shell& shell, std::
         for (; factors_.size() >= kept; factors_.pop_back()) memory = factors_.back().takeMemory();
         factors_.emplace_front(shell, loads, std::move(memory));
     }
-    if (!processor_->isHost()) note_ = "objects that end in their window are solved by a factor, which the host makes";
+    if (!factors_.front().has(loads)) return std::nullopt;
     return factors_.front().solve(loads, whole, tolerance);
 }
 

@@ -108,9 +108,9 @@ public:
                                                     std::size_t whole, double tolerance, double drawn);
 
     /// Does the same for a shell; works hold its shear across the thickness too, see shearWork(). An object that ends
-    /// in its window is solved by a factor on the host, see DirectShell. A processor without doubles, or whose memory
-    /// does not fit one, lets the host solve it too; note() says either. On the reference solver every load is solved
-    /// by the reference solver of shells.
+    /// in its window is solved by a factor on the host, whatever the processor, see DirectShell. A processor without
+    /// doubles, or whose memory does not fit one, lets the host solve it, and note() says so. On the reference solver
+    /// every load is solved by the reference solver of shells.
     [[nodiscard]] FootprintSolution solveFootprints(const Shell& shell, std::span<const Footprint> loads,
                                                     std::size_t whole, double tolerance, double drawn);
 

@@ -95,7 +95,8 @@ const std::shared_ptr<PatchUpdate>& Deformation::freeSlot()
 
 bool Deformation::isKeptFor(const Contact& contact) const
 {
-    constexpr double kPart = 0.5, kAlike = 0.5; // of the reach; cosine of 60 degrees [1]
+    // Of the reach, so that the other half is left while the next is solved; cosine of 60 degrees [1].
+    constexpr double kPart = 0.5, kAlike = 0.5;
     if (!kept_ || glm::dot(contact.outward, kept_->update.table.chart.frame.normal) < kAlike) return false;
     const ComplianceTable& table = kept_->update.table;
     const auto             place = table.chart.project(contact.point);
@@ -104,21 +105,20 @@ bool Deformation::isKeptFor(const Contact& contact) const
     return over && glm::length(*over - contact.point) < kept_->patch.thickness;
 }
 
-DeformationAnswer Deformation::keptFor(const Contact& contact, const Touch& touch)
+DeformationAnswer Deformation::keptFor(const Touch& touch)
 {
     const std::shared_ptr<PatchUpdate>& slot = freeSlot();
     *slot                                    = kept_->update;
     slot->table.sequence                     = touch.sequence;
     slot->table.time                         = touch.time;
     Patch patch                              = kept_->patch;
-    patch.contact                            = contact;
     patch.times                              = {};
     return {slot, std::move(patch), {}, {}, true};
 }
 
 DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touch)
 {
-    if (isKeptFor(contact)) return keptFor(contact, touch);
+    if (isKeptFor(contact)) return keptFor(touch);
     try {
         const std::shared_ptr<PatchUpdate>& slot   = freeSlot();
         PatchUpdate&                        update = *slot;

@@ -19,7 +19,7 @@ struct DeformationAnswer {
     std::optional<Patch>         patch;         ///< for an observer; there whenever `update` is
     std::string                  why;           ///< a failure, also one that a second try mended; may be empty
     std::string                  takeover{};    ///< who solves plates now, and why; empty: who did before
-    bool                         lasts = false; ///< however long it took it is as good as new
+    bool                         lasts = false; ///< wherever its table reaches it is as good as one of now
 };
 
 /// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of
@@ -39,7 +39,8 @@ public:
     /// surface there, it solves for the touch itself; if that fails too there is no update, and the answer says why.
     ///
     /// Of an object that the window spans, the last answer holds for what is touched within half the reach of its
-    /// table: the object bends in the same way wherever it is touched, and the table has its answers there.
+    /// table, which has its answers there. What is drawn, and the law of large deflections, are those of the place that
+    /// it was solved for, up to 1.5 radii of the fingertip away.
     ///
     /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
     /// for its place. Where the surface is too far away, or has no answer there, there is no update and no reason.
@@ -78,7 +79,7 @@ private:
     [[nodiscard]] DeformationAnswer                   solveAhead(const Touch& touch, double lead);
     [[nodiscard]] DeformationAnswer                   solveAt(const Contact& contact, const Touch& touch);
     [[nodiscard]] bool                                isKeptFor(const Contact& contact) const;
-    [[nodiscard]] DeformationAnswer                   keptFor(const Contact& contact, const Touch& touch);
+    [[nodiscard]] DeformationAnswer                   keptFor(const Touch& touch);
     [[nodiscard]] const std::shared_ptr<PatchUpdate>& freeSlot();
 
     const SoftObject*    object_; ///< never null

@@ -237,10 +237,14 @@ Footprint onSheet(const Footprint& footprint, const NodeField& covered, const Fo
 
 FootprintLattice onSheet(const FootprintLattice& lattice, const Patch& patch)
 {
-    FootprintLattice own    = lattice;
-    const Footprint& middle = lattice.loads[lattice.loads.size() / 2];
-    const Footprint  touch  = onSheet(middle, patch.covered, middle);
-    for (Footprint& load : own.loads) load = onSheet(load, patch.covered, touch);
+    FootprintLattice own     = lattice;
+    const Footprint& middle  = lattice.loads[lattice.loads.size() / 2];
+    const Footprint  touch   = onSheet(middle, patch.covered, middle);
+    const auto       piece   = touchedPiece(patch, touch.load(patch.plate.grid));
+    NodeField        covered = patch.covered; // another piece may be held by nothing
+    for (std::size_t n = 0; n < covered.values().size(); ++n)
+        if (!piece[n] && isOnSheet(patch, n)) covered.values()[n] = 0;
+    for (Footprint& load : own.loads) load = onSheet(load, covered, touch);
     return own;
 }
 

@@ -7,6 +7,8 @@ namespace palp {
 /// Fronts that wait for a later one at any time; halves of halves are far fewer.
 inline constexpr int kMostOpenFronts = 60;
 
+inline constexpr int kWholeRows = 8; ///< of a front come in vectors
+
 /// A dense part of a rim's factor: it eliminates its own unknowns, which are coupled to its border, unknowns of later
 /// fronts. With the matrix [P B'; B C] that it meets, of both, it keeps B P^-1 and P^-1.
 struct RimFront {
@@ -18,6 +20,10 @@ struct RimFront {
     bool           isLeaf;              ///< the others take what the last two fronts before them left, not yet taken
 
     [[nodiscard]] int rows() const noexcept { return borderRows + ownRows; }
+    [[nodiscard]] int rowsTogether() const noexcept
+    {
+        return (own + border + kWholeRows - 1) / kWholeRows * kWholeRows;
+    }
 };
 
 /// The rim of a level as the host's kernels see it: plain memory, which a Rim owns. Unknowns are numbered in the order

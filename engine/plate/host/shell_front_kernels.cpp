@@ -8,12 +8,6 @@ namespace palp::PALPATE_ISA {
 
 namespace {
 
-/// Rows of a front's columns: its own unknowns, then its border.
-int rowsOf(const RimFront& f)
-{
-    return (f.own + f.border + kLanes - 1) / kLanes * kLanes;
-}
-
 /// Writes what the matrix has at a front's own columns.
 void assemble(const ShellFronts& all, const RimFront& f, int rows, const int* localOf, double* front)
 {
@@ -40,7 +34,7 @@ bool factorFronts(const ShellFronts& all)
     Left left;
     for (int n = 0; n < all.frontCount; ++n) {
         const RimFront& f    = all.fronts[n];
-        const int       rows = rowsOf(f), count = f.own + f.border;
+        const int       rows = f.rowsTogether(), count = f.own + f.border;
         for (std::ptrdiff_t m = 0; m < std::ptrdiff_t(count) * rows; ++m) front[m] = 0;
         for (int m = 0; m < f.border; ++m) localOf[all.borders[f.borderAt + m]] = f.own + m;
         assemble(all, f, rows, localOf, front);
@@ -76,7 +70,7 @@ using Eight = Together<double>;
 void forwardFront(const RimFront& f, const double* columns, Eight* y)
 {
     constexpr int        kPanel = 4;
-    const std::ptrdiff_t rows   = rowsOf(f);
+    const std::ptrdiff_t rows   = f.rowsTogether();
     const int            count  = f.own + f.border;
     for (int first = 0; first < f.own; first += kPanel) {
         const int     end = min(first + kPanel, f.own);
@@ -100,7 +94,7 @@ void forwardFront(const RimFront& f, const double* columns, Eight* y)
 void backwardFront(const RimFront& f, const double* columns, Eight* y)
 {
     constexpr int        kPanel = 4;
-    const std::ptrdiff_t rows   = rowsOf(f);
+    const std::ptrdiff_t rows   = f.rowsTogether();
     const int            count  = f.own + f.border;
     for (int first = (f.own - 1) / kPanel * kPanel; first >= 0; first -= kPanel) {
         const int     end = min(first + kPanel, f.own);

@@ -54,7 +54,7 @@ Which widened(const PlateGrid& grid, const Which& from, int by)
 /// Returns the nodes at which the bed leaves something of Airy's function.
 Which withStress(const Shell& shell)
 {
-    constexpr double kFirm = 20; // bed over the membrane's own stiffness [1]
+    constexpr double kFirm = 20; // bed over the membrane's own stiffness, of the 30 that the firmest has [1]
     const PlateGrid& grid  = shell.bending.grid;
     const double     area  = grid.spacingX * grid.spacingZ;
     Which            loose(grid.nodes());
@@ -217,7 +217,7 @@ Which hangingTogether(const PlateGrid& grid, const Which& among, std::span<const
 /// Fills a field beyond the nodes that are known: a few rings as it goes on there, and the rest by their means.
 void goOn(NodeField& field, const PlateGrid& grid, Which known)
 {
-    constexpr int    kRings     = 4;
+    constexpr int    kRings     = 4; // beyond them a bed leaves nothing of the stress that they would load
     constexpr int    kAway[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
     const auto       node       = [&](int i, int j) { return i * grid.nodesZ() + j; };
     std::vector<int> ring;
@@ -312,7 +312,8 @@ DirectShell::Impl::Impl(const Shell& given, std::span<const Footprint> footprint
 {
     const auto began = Clock::now();
     if (const auto why = whyUnsolvable(shell)) throw Error("the shell cannot be solved: " + *why);
-    constexpr double kNothing = 1e-5, kSome = 0.1; // shares of a sheet [1]
+    // Shares of a sheet: ten times what the void has; a node that the rest holds well [1].
+    constexpr double kNothing = 1e-5, kSome = 0.1;
     const NodeField  shares = sharesOfSheet(shell);
     stressed                = withStress(shell);
     sheet                   = onSheet(shares, kNothing);
@@ -396,8 +397,7 @@ void DirectShell::Impl::divide()
         for (int t = firstThrust; t < unknowns && !isLast; ++t) borders.push_back(t);
         front.border     = int(std::ptrdiff_t(borders.size()) - front.borderAt);
         front.borderRows = whole(front.border);
-        front.ownRows    = whole(front.own);
-        const int high   = whole(front.own + front.border);
+        const int high   = front.rowsTogether();
         mostRows         = std::max(mostRows, high);
         entries += std::ptrdiff_t(high) * front.own;
         fronts.push_back(front);
@@ -515,11 +515,9 @@ bool DirectShell::Impl::solveEight(std::span<const Footprint> footprints, bool r
 {
     std::vector<double> forces(numbers.size(), 0.0);
     for (std::size_t lane = 0; lane < footprints.size(); ++lane)
-        for (const Footprint::Part& part : footprints[lane].parts) {
-            PALP_EXPECT(part.node < ofW.size(), "a footprint lies on nodes that the shell does not have");
+        for (const Footprint::Part& part : footprints[lane].parts)
             if (const int unknown = ofW[part.node]; unknown != kNone)
                 forces[std::size_t(unknown) * kLoadsTogether + lane] = part.force;
-        }
     numbers = forces;
     backSubstitute();
     if (!refined) return true;
@@ -545,7 +543,10 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
     constexpr double kSpare =
         0.1; // of the tolerance: beyond it all loads are refined, not those with the whole one only
     const auto began = Clock::now();
-    if (!isFactored) return std::nullopt;
+    for (const Footprint& footprint : footprints)
+        for (const Footprint::Part& part : footprint.parts)
+            PALP_EXPECT(part.node < ofW.size(), "a footprint lies on nodes that the shell does not have");
+    if (!isFactored || firstThrust == 0) return std::nullopt; // firstThrust: as many unknowns have nodes
     const Shear       shear(shell);
     FootprintSolution solution;
     double            worst = 0; // share that refinement changes [1]

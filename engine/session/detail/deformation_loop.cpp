@@ -1,6 +1,7 @@
 #include "engine/session/detail/deformation_loop.h"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -11,6 +12,19 @@ namespace palp {
 
 using Clock   = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
+
+namespace {
+
+/// Makes a table that lasts as new as the last touch, if it reaches that: one that took longer to solve than a force
+/// lives would end the force, where the one before goes on.
+void renew(ComplianceTable& table, const Touch& last)
+{
+    const auto place = table.chart.project(last.point);
+    if (!place || std::max(std::abs(place->x), std::abs(place->z)) > table.reach()) return;
+    table.time = std::max(table.time, last.time);
+}
+
+} // namespace
 
 void DeformationLoop::run(const std::atomic<bool>& over, const std::atomic<Clock::rep>* stopped)
 {
@@ -33,8 +47,8 @@ void DeformationLoop::run(const std::atomic<bool>& over, const std::atomic<Clock
         slow.solve.add(took);
         slow.addPatch(answer.update != nullptr, answer.why);
         if (!answer.update) continue;
-        // One that took longer than a force lives would end it, where one that was kept goes on.
-        if (answer.lasts) answer.update->table.time += took;
+        touch.take();
+        if (answer.lasts) renew(answer.update->table, *touch.held());
         update_.draft() = std::move(answer.update);
         update_.publish();
         patch.draft() = {std::move(answer.patch), took};

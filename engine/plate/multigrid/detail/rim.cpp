@@ -15,7 +15,6 @@ namespace {
 constexpr int kReach = 4;  ///< nodes beside a jump: fewer take more steps, more cost more than they save
 constexpr int kLeaf  = 12; ///< nodes that are not divided
 constexpr int kStrip = 2;  ///< nodes across a strip: a term of the operator reaches as far
-constexpr int kWhole = 8;  ///< rows of a front come in vectors
 
 /// Multiplications of a factor per unknown are at least so many, unless a rim is very small.
 constexpr double kLeastWork = 1400;
@@ -185,7 +184,7 @@ void Rim::addFront(int first, int end, bool isLeaf)
     RimFront front{first, end - first, 0, 0, 0, std::ptrdiff_t(borders_.size()), std::ptrdiff_t(entries_), isLeaf};
     for (int n = first; n < end; ++n) numbers_[std::size_t(nodes_[std::size_t(n)])] = n;
     findBorder(front);
-    const auto whole = [](int count) { return (count + kWhole - 1) / kWhole * kWhole; };
+    const auto whole = [](int count) { return (count + kWholeRows - 1) / kWholeRows * kWholeRows; };
     front.border     = int(borders_.size()) - int(front.borderAt);
     front.borderRows = whole(front.border);
     front.ownRows    = whole(front.own);
@@ -223,10 +222,10 @@ void Rim::findBorder(RimFront& front)
 
 const RimView& Rim::prepare(bool doubles)
 {
-    int mostRows = kWhole;
+    int mostRows = kWholeRows;
     for (const RimFront& front : fronts_) mostRows = std::max(mostRows, front.rows());
     // One vector more than needed: loads of eight may begin at the last number.
-    columns_.resize(doubles ? entries_ + kWhole : entries_ / 2 + kWhole);
+    columns_.resize(doubles ? entries_ + kWholeRows : entries_ / 2 + kWholeRows);
     view_ = {nodes_.data(),   numbers_.data(),    fronts_.data(),      borders_.data(), tiles_.data(),
              columns_.data(), int(nodes_.size()), int(fronts_.size()), mostRows,        doubles};
     return view_;

@@ -39,7 +39,6 @@ public:
     [[nodiscard]] std::span<const RimFront> fronts() const noexcept { return fronts_; }
     [[nodiscard]] std::span<const int>      borders() const noexcept { return borders_; } ///< numbers of nodes()
     [[nodiscard]] std::span<const int>      nodes() const noexcept { return nodes_; } ///< in the order of elimination
-    [[nodiscard]] std::span<const int>      numbers() const noexcept { return numbers_; } ///< by node, or -1
 
 private:
     [[nodiscard]] bool divideFound(double mostWork);
