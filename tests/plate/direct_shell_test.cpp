@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -115,22 +116,29 @@ TEST(DirectShell, AGutterBendsAboutItsRoot)
     EXPECT_NEAR(found->responses[0].work / felt(shell, load, w).work, 1, 2e-3);
 }
 
+/// Returns a sheet that ends where nodes are beyond its border.
+Shell endingWhere(const std::function<bool(int, int)>& isBeyond)
+{
+    Shell            shell = shellOf(square(64), disc(1), constant(1, 0, 0), 4);
+    const PlateGrid& grid  = shell.bending.grid;
+    const double     area  = grid.spacingX * grid.spacingZ;
+    shell.stressBed        = NodeField(grid);
+    for (int i = 0; i <= grid.cellsX; ++i)
+        for (int j = 0; j <= grid.cellsZ; ++j) {
+            if (!isBeyond(i, j)) continue;
+            shell.bending.rigidity(i, j) *= 1e-6;
+            shell.stressBed(i, j) = 270 * shell.membraneCompliance(i, j) / (area * area);
+        }
+    return shell;
+}
+
 /// A slit of five nodes between two halves of a sheet: what is touched beside it must not feel the other half.
 TEST(DirectShell, NothingBridgesASlit)
 {
     const auto slit = [](bool withOther) {
-        Shell            shell = shellOf(square(64), disc(1), constant(1, 0, 0), 4);
-        const PlateGrid& grid  = shell.bending.grid;
-        const double     area  = grid.spacingX * grid.spacingZ;
-        shell.stressBed        = NodeField(grid);
-        for (int i = 0; i <= 64; ++i)
-            for (int j = 0; j <= 64; ++j)
-                if ((j >= 36 && j <= 40) || (j > 40 && !withOther)) {
-                    shell.bending.rigidity(i, j) *= 1e-6;
-                    shell.stressBed(i, j) = 270 * shell.membraneCompliance(i, j) / (area * area);
-                }
-        const auto loads = lineOn(grid, 1);
-        const auto found = DirectShell(shell, loads).solve(loads, 0, 1e-4);
+        const Shell shell = endingWhere([=](int, int j) { return (j >= 36 && j <= 40) || (j > 40 && !withOther); });
+        const auto  loads = lineOn(shell.bending.grid, 1);
+        const auto  found = DirectShell(shell, loads).solve(loads, 0, 1e-4);
         return found ? found->responses.front().work : NAN;
     };
     EXPECT_NEAR(slit(true) / slit(false), 1, 1e-6); // rounding of a matrix whose condition is some 1e9
@@ -140,17 +148,9 @@ TEST(DirectShell, NothingBridgesASlit)
 TEST(DirectShell, APieceThatNothingHoldsDoesNoHarm)
 {
     const auto with = [](bool piece) {
-        Shell            shell = shellOf(square(64), disc(1), constant(1, 0, 0), 4);
-        const PlateGrid& grid  = shell.bending.grid;
-        const double     area  = grid.spacingX * grid.spacingZ;
-        shell.stressBed        = NodeField(grid);
-        for (int i = 0; i <= 64; ++i)
-            for (int j = 0; j <= 64; ++j)
-                if (j > 40 && !(piece && std::abs(i - 20) <= 2 && std::abs(j - 52) <= 2)) {
-                    shell.bending.rigidity(i, j) *= 1e-6;
-                    shell.stressBed(i, j) = 270 * shell.membraneCompliance(i, j) / (area * area);
-                }
-        const auto  loads = lineOn(grid, 1);
+        const Shell shell = endingWhere(
+            [=](int i, int j) { return j > 40 && !(piece && std::abs(i - 20) <= 2 && std::abs(j - 52) <= 2); });
+        const auto  loads = lineOn(shell.bending.grid, 1);
         DirectShell direct(shell, loads);
         Footprint   other;
         other.parts.push_back({.node = 20 * 65 + 52, .force = 1});

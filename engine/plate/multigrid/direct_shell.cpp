@@ -15,6 +15,7 @@
 #include "engine/plate/host/shell_view.h"
 #include "engine/plate/multigrid/detail/host_call.h"
 #include "engine/plate/multigrid/detail/rim.h"
+#include "engine/plate/multigrid/detail/sheet_nodes.h"
 #include "engine/plate/shell_energy.h"
 #include "engine/plate/thrust.h"
 
@@ -26,67 +27,6 @@ using Clock = std::chrono::steady_clock;
 double millisecondsFrom(Clock::time_point began)
 {
     return std::chrono::duration<double, std::milli>(Clock::now() - began).count();
-}
-
-constexpr int kNone = -1; ///< number of what is no unknown
-
-using Which = std::vector<std::uint8_t>; ///< nodes of a grid: 1 for those that are meant
-
-/// Returns nodes with those up to so many away along x and z.
-Which widened(const PlateGrid& grid, const Which& from, int by)
-{
-    Which along(from.size()), wide(from.size());
-    for (int i = 0; i <= grid.cellsX; ++i)
-        for (int j = 0; j <= grid.cellsZ; ++j) {
-            if (!from[std::size_t(i * grid.nodesZ() + j)]) continue;
-            for (int b = std::max(j - by, 0); b <= std::min(j + by, grid.cellsZ); ++b)
-                along[std::size_t(i * grid.nodesZ() + b)] = 1;
-        }
-    for (int i = 0; i <= grid.cellsX; ++i)
-        for (int j = 0; j <= grid.cellsZ; ++j) {
-            if (!along[std::size_t(i * grid.nodesZ() + j)]) continue;
-            for (int a = std::max(i - by, 0); a <= std::min(i + by, grid.cellsX); ++a)
-                wide[std::size_t(a * grid.nodesZ() + j)] = 1;
-        }
-    return wide;
-}
-
-/// Returns the nodes at which the bed leaves something of Airy's function.
-Which withStress(const Shell& shell)
-{
-    constexpr double kFirm = 20; // bed over the membrane's own stiffness, of the 30 that the firmest has [1]
-    const PlateGrid& grid  = shell.bending.grid;
-    const double     area  = grid.spacingX * grid.spacingZ;
-    Which            loose(grid.nodes());
-    for (std::size_t n = 0; n < loose.size(); ++n)
-        loose[n] = shell.stressBed.values()[n] * area * area < kFirm * shell.membraneCompliance.values()[n];
-    return widened(grid, loose, 1);
-}
-
-/// Returns the nodes at which there is more than a share of the sheet.
-Which onSheet(const NodeField& shares, double more)
-{
-    Which sheet(shares.values().size());
-    for (std::size_t n = 0; n < sheet.size(); ++n) sheet[n] = shares.values()[n] > more;
-    return sheet;
-}
-
-/// Returns the nodes that terms of the sheet's own energy reach, and those beside which there is stress: a curvature
-/// that ends where a stress does not loads it by the deflection itself, not by its second differences (a gutter that is
-/// held at one end was felt four times too stiff).
-Which withDeflection(const PlateGrid& grid, const Which& sheet, const Which& stressed)
-{
-    Which some = stressed;
-    for (std::size_t n = 0; n < some.size(); ++n) some[n] = some[n] || sheet[n];
-    return widened(grid, some, 1);
-}
-
-/// Takes those of a field's nodes away that its sides hold.
-void takeOffHeld(Which& which, const Plate& plate)
-{
-    for (int i = 0; i <= plate.grid.cellsX; ++i)
-        for (int j = 0; j <= plate.grid.cellsZ; ++j)
-            if (isHeld(plate, i, j)) which[std::size_t(i * plate.grid.nodesZ() + j)] = 0;
 }
 
 /// The entries of a matrix of two fields, w and phi: each node has some with the nodes that a term reaches with it.
@@ -181,79 +121,6 @@ double geometricMean(const NodeField& field, const Which& which)
         ++all;
     }
     return std::exp(sum / all);
-}
-
-/// Returns the node that a footprint presses on most, or kNone.
-int mostPressed(const Footprint& footprint)
-{
-    const auto most =
-        std::ranges::max_element(footprint.parts, {}, [](const Footprint::Part& part) { return std::abs(part.force); });
-    return most == footprint.parts.end() ? kNone : int(most->node);
-}
-
-/// Returns those of some nodes that hang together with one that is pressed.
-Which hangingTogether(const PlateGrid& grid, const Which& among, std::span<const Footprint> footprints)
-{
-    Which            is(among.size());
-    std::vector<int> next;
-    const auto       reach = [&](int node) {
-        if (!among[std::size_t(node)] || is[std::size_t(node)]) return;
-        is[std::size_t(node)] = 1;
-        next.push_back(node);
-    };
-    for (const Footprint& footprint : footprints)
-        if (const int node = mostPressed(footprint); node != kNone && std::size_t(node) < is.size()) reach(node);
-    while (!next.empty()) {
-        const int node = next.back(), i = node / grid.nodesZ(), j = node % grid.nodesZ();
-        next.pop_back();
-        if (i > 0) reach(node - grid.nodesZ());
-        if (i < grid.cellsX) reach(node + grid.nodesZ());
-        if (j > 0) reach(node - 1);
-        if (j < grid.cellsZ) reach(node + 1);
-    }
-    return is;
-}
-
-/// Fills a field beyond the nodes that are known: a few rings as it goes on there, and the rest by their means.
-void goOn(NodeField& field, const PlateGrid& grid, Which known)
-{
-    constexpr int    kRings     = 4; // beyond them a bed leaves nothing of the stress that they would load
-    constexpr int    kAway[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
-    const auto       node       = [&](int i, int j) { return i * grid.nodesZ() + j; };
-    std::vector<int> ring;
-    const auto       isKnown = [&](int i, int j) {
-        return i >= 0 && j >= 0 && i <= grid.cellsX && j <= grid.cellsZ && known[std::size_t(node(i, j))];
-    };
-    const auto next = [&] { // nodes beside those that are known
-        ring.clear();
-        for (int i = 0; i <= grid.cellsX; ++i)
-            for (int j = 0; j <= grid.cellsZ; ++j) {
-                if (isKnown(i, j)) continue;
-                for (const auto& [a, b] : kAway)
-                    if (isKnown(i + a, j + b)) {
-                        ring.push_back(node(i, j));
-                        break;
-                    }
-            }
-        return !ring.empty();
-    };
-    for (int n = 0; next(); ++n) {
-        for (const int at : ring) {
-            const int i = at / grid.nodesZ(), j = at % grid.nodesZ();
-            double    mean = 0, along = 0, means = 0, alongs = 0;
-            for (const auto& [a, b] : kAway) {
-                if (!isKnown(i + a, j + b)) continue;
-                const double beside = field(i + a, j + b);
-                mean += beside;
-                ++means;
-                if (n >= kRings || !isKnown(i + 2 * a, j + 2 * b)) continue;
-                along += 2 * beside - field(i + 2 * a, j + 2 * b);
-                ++alongs;
-            }
-            field(i, j) = alongs > 0 ? along / alongs : mean / means;
-        }
-        for (const int at : ring) known[std::size_t(at)] = 1;
-    }
 }
 
 } // namespace
@@ -379,7 +246,6 @@ void DirectShell::Impl::divide()
                 firstOf[n] = std::min(firstOf[n], unknown);
             }
     }
-    const auto     whole    = [](int count) { return (count + kLoadsTogether - 1) / kLoadsTogether * kLoadsTogether; };
     const int      thrusts  = unknowns - firstThrust;
     std::ptrdiff_t entries  = 0;
     int            mostRows = kLoadsTogether;
@@ -396,7 +262,7 @@ void DirectShell::Impl::divide()
                 borders.push_back(unknown);
         for (int t = firstThrust; t < unknowns && !isLast; ++t) borders.push_back(t);
         front.border     = int(std::ptrdiff_t(borders.size()) - front.borderAt);
-        front.borderRows = whole(front.border);
+        front.borderRows = (front.border + kWholeRows - 1) / kWholeRows * kWholeRows;
         const int high   = front.rowsTogether();
         mostRows         = std::max(mostRows, high);
         entries += std::ptrdiff_t(high) * front.own;
