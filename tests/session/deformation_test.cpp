@@ -1,9 +1,12 @@
 #include "engine/session/deformation.h"
 
+#include <atomic>
+#include <memory>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "engine/session/detail/deformation_loop.h"
 #include "engine/session/scene.h"
 
 namespace palp {
@@ -70,6 +73,41 @@ TEST_F(ObjectDeformation, IsSolvedAnewOnTheOtherSideAndWhenItIsPainted)
     deformation.repaint(painted);
     EXPECT_TRUE(touch(0, 0, -1).update);
     EXPECT_TRUE(anew());
+}
+
+/// Runs one solve of the touch at 1 s, while which the finger goes on to a place, at 2 s.
+/// \return the time that its table then has [s]
+double timeOfTable(bool lasts, double x)
+{
+    std::atomic<bool> over = false;
+    DeformationLoop*  loop = nullptr;
+    const auto        slow = [&](const Touch&, double) {
+        loop->touch.draft() = {2, 2, true, {x, 0, 0}, {0, 0, 1}, {}};
+        loop->touch.publish();
+        over                   = true;
+        auto update            = std::make_shared<PatchUpdate>();
+        update->table.sequence = 1;
+        update->table.time     = 1;
+        update->table.side     = 3;
+        update->table.spacing  = 5e-3;
+        update->table.chart    = Chart::around({}, {0, 0, 0}, {0, 0, 1}, Map::lambertAzimuthal);
+        return DeformationAnswer{std::move(update), {}, {}, {}, lasts};
+    };
+    DeformationLoop here(slow, 1000);
+    loop               = &here;
+    here.touch.draft() = {1, 1, true, {}, {0, 0, 1}, {}};
+    here.touch.publish();
+    here.run(over);
+    const PatchUpdate* const newest = here.newest(nullptr);
+    return newest ? newest->table.time : -1;
+}
+
+/// A solve that takes longer than a force lives would end it, though the table is as good as before.
+TEST(DeformationLoop, AnAnswerThatLastsIsAsNewAsTheLastTouchThatItReaches)
+{
+    EXPECT_EQ(timeOfTable(true, 4e-3), 2);
+    EXPECT_EQ(timeOfTable(true, 6e-3), 1) << "beyond the reach of 5 mm";
+    EXPECT_EQ(timeOfTable(false, 4e-3), 1);
 }
 
 } // namespace
