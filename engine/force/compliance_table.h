@@ -46,8 +46,9 @@ struct ComplianceTable {
     double        spacing = 0;        ///< of the entries [m]
     Entries       compliance{};       ///< ln c
     Entries       contactStiffness{}; ///< ln k_c, of the rigidity's geometric mean over the footprint
-    bool          stiffens = false;   ///< b varies from place to place; else the next is not read
-    Entries       stiffening{};       ///< b, see DepthLaw: its mean over the footprint [1/m]
+    bool          lasts = false; ///< of an object that its window spans: where it reaches it is as good as the next
+    bool          stiffens = false; ///< b varies from place to place; else the next is not read
+    Entries       stiffening{};     ///< b, see DepthLaw: its mean over the footprint [1/m]
 
     [[nodiscard]] double reach() const noexcept { return side / 2 * spacing; } ///< along each axis [m]
 

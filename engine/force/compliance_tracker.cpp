@@ -102,6 +102,7 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
                            std::exp(hand(contact_, here.lnContactStiffness, now.time)), here.clamped,
                            now.time - (guessing_ ? landed_ : table_->time), guessing_ ? 0 : table_->chart.curvature};
     answer.guessed = guessing_;
+    answer.lasts   = law_ == ComplianceLaw::table && !guessing_ && table_->lasts && !here.clamped;
     if (here.stiffening) answer.stiffening = std::max(0.0, hand(stiffening_, *here.stiffening, now.time));
     return answer;
 }

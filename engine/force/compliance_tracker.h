@@ -40,6 +40,8 @@ struct LocalCompliance {
 
     std::optional<double> stiffening{}; ///< b [1/m]; empty: it is the scene's
 
+    bool lasts = false; ///< the table says of the contact what the next one would, see ComplianceTable::lasts
+
     bool guessed = false; ///< the homogeneous law answers, for want of a table
 };
 

@@ -29,6 +29,47 @@ NodeField slopeOf(const NodeField& ahead, const NodeField& behind, double distan
     return slope;
 }
 
+/// The load of a fingertip on the nodes around it, so that none of a large grid is touched beside them.
+class FingertipOn {
+public:
+    /// \param centre  from the plate's middle [m]
+    /// \param around  where it may be moved from there [m]
+    FingertipOn(const PlateGrid& grid, const ChartPoint& centre, double radius, double around)
+        : whole_(grid), part_(grid), radius_(radius)
+    {
+        const auto range = [&](double at, double spacing, int& cells) {
+            const double margin = radius + around + spacing;
+            const int    first  = std::clamp(int(std::floor((at - margin) / spacing)), 0, cells);
+            const int    last   = std::clamp(int(std::ceil((at + margin) / spacing)), first, cells);
+            cells               = last - first;
+            return first;
+        };
+        firstX_ = range(grid.sizeX() / 2 + centre.x, grid.spacingX, part_.cellsX);
+        firstZ_ = range(grid.sizeZ() / 2 + centre.z, grid.spacingZ, part_.cellsZ);
+    }
+
+    [[nodiscard]] NodeField at(const ChartPoint& centre) const
+    {
+        return footprintLoad(part_, 1, whole_.sizeX() / 2 + centre.x - firstX_ * whole_.spacingX,
+                             whole_.sizeZ() / 2 + centre.z - firstZ_ * whole_.spacingZ, radius_);
+    }
+
+    /// Returns a footprint of its nodes as one of the whole grid's.
+    [[nodiscard]] Footprint onWhole(Footprint own) const
+    {
+        for (Footprint::Part& part : own.parts) {
+            const int i = int(part.node) / part_.nodesZ(), j = int(part.node) % part_.nodesZ();
+            part.node = std::uint32_t((firstX_ + i) * whole_.nodesZ() + firstZ_ + j);
+        }
+        return own;
+    }
+
+private:
+    PlateGrid whole_, part_;
+    double    radius_; ///< [m]
+    int       firstX_ = 0, firstZ_ = 0;
+};
+
 /// Returns ln c of a footprint of 1 N, with its slopes.
 ComplianceTable::Entry complianceOf(const FootprintResponse& felt)
 {
@@ -131,6 +172,22 @@ double curvedAs(const SoftObject& object, PatchSettings settings)
 
 } // namespace
 
+std::vector<Footprint> footprintsAt(const PlateGrid& grid, const FootprintTable& shape, const PlaceOnPlate& placeOf)
+{
+    // Half a spacing to either side: the sub-cells of a footprint then cross as many nodes wherever it lies.
+    const double           dx = grid.spacingX / 2, dz = grid.spacingZ / 2;
+    std::vector<Footprint> loads;
+    for (int i = 0; i < shape.side; ++i)
+        for (int j = 0; j < shape.side; ++j) {
+            const double      x = (i - shape.side / 2) * shape.radius, z = (j - shape.side / 2) * shape.radius;
+            const FingertipOn tip(grid, placeOf({x, z}), shape.radius, 2 * std::max(dx, dz));
+            const auto        at = [&](double u, double v) { return tip.at(placeOf({u, v})); };
+            loads.push_back(tip.onWhole(Footprint(at(x, z), slopeOf(at(x + dx, z), at(x - dx, z), 2 * dx),
+                                                  slopeOf(at(x, z + dz), at(x, z - dz), 2 * dz))));
+        }
+    return loads;
+}
+
 FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings& given, int side, PlateSolver& solver)
 {
     const PatchSettings settings = settledFor(object, given);
@@ -166,17 +223,7 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
                     formatQuantity(shape.radius, "m") + "; expected at least " + formatQuantity(wanted, "m"));
 
     FootprintLattice lattice{.shape = shape, .wholeObject = wholeObject, .shells = std::make_shared<ShellWindows>()};
-    const auto       loadAt = [&](double x, double z) {
-        return footprintLoad(grid, 1, grid.sizeX() / 2 + x, grid.sizeZ() / 2 + z, shape.radius);
-    };
-    // Half a spacing to either side: the sub-cells of a footprint then cross as many nodes wherever it lies.
-    const double dx = grid.spacingX / 2, dz = grid.spacingZ / 2;
-    for (int i = 0; i < shape.side; ++i)
-        for (int j = 0; j < shape.side; ++j) {
-            const double x = (i - shape.side / 2) * shape.radius, z = (j - shape.side / 2) * shape.radius;
-            lattice.loads.emplace_back(loadAt(x, z), slopeOf(loadAt(x + dx, z), loadAt(x - dx, z), 2 * dx),
-                                       slopeOf(loadAt(x, z + dz), loadAt(x, z - dz), 2 * dz));
-        }
+    lattice.loads      = footprintsAt(grid, shape, [](const ChartPoint& place) { return place; });
     const int reach    = homogeneous.foundation > 0 && !wholeObject ? kRungs : 0;
     lattice.rigidity   = homogeneous.rigidity(0, 0);
     lattice.foundation = homogeneous.foundation;

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -46,6 +47,14 @@ struct FootprintLattice {
     [[nodiscard]] double lnCompliance(double ofRigidity) const;
     [[nodiscard]] bool   onFoundation() const noexcept { return middles.size() > 1; }
 };
+
+/// Returns the place on a plate, from its middle [m], of a place in a table.
+using PlaceOnPlate = std::function<ChartPoint(const ChartPoint&)>;
+
+/// Makes the footprints of a table whose places lie elsewhere on a plate, with their changes along the table's axes.
+/// \throws Error if a footprint does not lie wholly on the plate
+[[nodiscard]] std::vector<Footprint> footprintsAt(const PlateGrid& grid, const FootprintTable& shape,
+                                                  const PlaceOnPlate& placeOf);
 
 /// Solves the lattice of the settings' window on a homogeneous object of the geometric mean of this one's rigidity.
 /// \param side  1, 3, 5 or 7, see tableSide()

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -17,34 +15,21 @@
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/body_give.h"
 #include "engine/pipeline/detail/coarser_grid.h"
+#include "engine/pipeline/detail/contact_chart.h"
 #include "engine/pipeline/detail/grid_part.h"
 #include "engine/pipeline/detail/other_face.h"
+#include "engine/pipeline/detail/patch_response.h"
 #include "engine/pipeline/detail/places_followed.h"
 #include "engine/pipeline/detail/shell_patch.h"
+#include "engine/pipeline/detail/stage_clock.h"
 #include "engine/pipeline/detail/touched_surface.h"
 #include "engine/pipeline/detail/whole_object.h"
 #include "engine/pipeline/detail/window_turn.h"
-#include "engine/plate/load.h"
 
 // The paper's section 2. Each step fills in its part of the patch; deform() below gives their order.
 
 namespace palp {
 namespace {
-
-/// Adds the time until its scope ends to a stage.
-class StageClock {
-public:
-    explicit StageClock(double& milliseconds) : milliseconds_(milliseconds) {}
-    StageClock(const StageClock&)            = delete;
-    StageClock& operator=(const StageClock&) = delete;
-    ~StageClock() { milliseconds_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count(); }
-
-private:
-    using Clock = std::chrono::steady_clock;
-
-    double&           milliseconds_;
-    Clock::time_point start_ = Clock::now();
-};
 
 // --- 2.1: the neighbourhood
 
@@ -83,99 +68,6 @@ TouchedSurface touchedSurface(Patch& patch, const SoftObject& object, const Ball
     TouchedSurface   surface = touchedSurface(object, patch.contact, ball);
     patch.noise              = surface.noise;
     return surface;
-}
-
-// --- 2.2, equations 1 to 3: the sphere near the contact
-
-/// Takes the plane that the proxy felt where the fit is none or disagrees by more than 60 degrees, as at a rim.
-void takeFeltNormal(Patch& patch, const TouchedSurface& surface)
-{
-    constexpr double kAgrees = 0.5; // cosine of 60 degrees [1]
-    const Contact&   contact = patch.contact;
-    const bool       agrees  = patch.sphere.usable() &&
-                        std::abs(glm::dot(patch.sphere.fit.normal(surface.anchor), contact.outward)) >= kAgrees;
-    if (!contact.felt || agrees) return;
-    patch.normalFelt           = true;
-    patch.sphere.outcome       = FitOutcome::plane;
-    patch.sphere.fit           = {};
-    patch.sphere.fit.reference = contact.point;
-    patch.sphere.fit.gradient  = contact.outward;
-}
-
-void fitSphereTo(Patch& patch, const SoftObject& object, const Ball& ball, const TouchedSurface& surface,
-                 const PatchSettings& settings)
-{
-    const StageClock clock(patch.times.fit);
-    if (settings.neighbourhood == Neighbourhood::surface) {
-        patch.sphere = surface.sphere;
-        takeFeltNormal(patch, surface);
-        return;
-    }
-    std::vector<glm::dvec3> points;
-    points.reserve(ball.points.size());
-    for (const std::uint32_t point : ball.points) points.push_back(object.positions()[point]);
-    patch.sphere = fitSphere(points);
-}
-
-// --- 2.3, equation 4: an equal-area map, flat about the contact
-
-std::string degrees(double cosine)
-{
-    return std::to_string(std::lround(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi)) + " degrees";
-}
-
-/// Returns true if the cloud has another side behind the contact: points in a tube inwards, beyond the surface itself.
-bool isClosedBehind(const SoftObject& object, const glm::dvec3& contact, const glm::dvec3& outward)
-{
-    const double reach = 3 * object.spacing(); // radius of the tube, and where it begins: some ten points across [m]
-    const double end   = object.cloud().bounds().diagonal();
-    const auto   holds = [&](std::uint32_t point) {
-        const glm::dvec3& p     = object.positions()[point];
-        const double      depth = glm::dot(contact - p, outward);
-        return depth > reach && glm::length(p + depth * outward - contact) < reach;
-    };
-    constexpr double kWorth = 20; // points that cost what a ball does [1]; a stray point afar makes a tube of millions
-    if (end / (2 * reach) > double(object.size()) / kWorth) {
-        for (std::uint32_t point = 0; point < object.size(); ++point)
-            if (holds(point)) return true;
-        return false;
-    }
-    std::vector<std::uint32_t> near; // balls about the middles of the tube's pieces, each as long as wide
-    for (double depth = 2 * reach; depth < end + 2 * reach; depth += 2 * reach) {
-        object.index().gather(contact - depth * outward, std::sqrt(2.0) * reach, near);
-        if (std::any_of(near.begin(), near.end(), holds)) return true;
-    }
-    return false;
-}
-
-/// Returns the chart on the hand's side of the surface; sets patch.sideUnsure.
-///
-/// A known direction decides unless it runs along the surface. A guessed one decides only where it is within 60 degrees
-/// of the normal; elsewhere the surface is an open sheet, which has no outside: there it is touched from the positive
-/// side of the world axis nearest to its normal, so that all of a sheet is touched from one side.
-Chart chartAt(Patch& patch, const SoftObject& object, const PatchSettings& settings,
-              const std::optional<Frame>& carried)
-{
-    constexpr double kSteep = 0.17, kClear = 0.5; // cosines of 80 and 60 degrees [1]
-    const Contact    contact = patch.contact;
-    const auto       around  = [&](const glm::dvec3& side) {
-        return Chart::around(patch.sphere.fit, contact.point, side, settings.map, carried);
-    };
-    const Chart  chart  = around(contact.outward);
-    const auto&  normal = chart.frame.normal;
-    const double cosine = glm::dot(normal, contact.outward);
-    if (contact.outwardKnown && cosine < kSteep)
-        throw Error(placeText(patch.contact) + ": the direction from which the finger comes is " + degrees(cosine) +
-                    " from the surface's normal (" + directionText(normal) +
-                    "), expected at most 80, or the side is not clear; try that normal or its opposite");
-    if (contact.outwardKnown) return chart;
-    patch.sideUnsure = !isClosedBehind(object, contact.point, normal);
-    if (!patch.sideUnsure || cosine >= kClear) return chart;
-    int axis = 0;
-    for (int k = 1; k < 3; ++k)
-        if (std::abs(normal[k]) > std::abs(normal[axis])) axis = k;
-    patch.contact.outward = {axis == 0, axis == 1, axis == 2};
-    return around(patch.contact.outward);
 }
 
 /// Adds those of the points that the sphere's map has a place for.
@@ -359,7 +251,7 @@ Laid layFlat(Patch& patch, const SoftObject& object, const Ball& ball, TouchedSu
              const PatchSettings& settings, const std::optional<Frame>& carried)
 {
     const StageClock clock(patch.times.project);
-    patch.chart       = chartAt(patch, object, settings, carried);
+    patch.chart       = chartAt(patch, object, settings.map, carried);
     patch.flatBecause = whyFlat(patch, object, settings);
     if (settings.neighbourhood == Neighbourhood::ball) return layBall(patch, ball, object);
     if (glm::dot(surface.normal, patch.chart.frame.normal) < 0) surface.turnOver(); // the finger's side was a guess
@@ -489,21 +381,6 @@ void rigiditiesOf(const SoftObject& object, std::span<const std::uint32_t> point
     for (std::size_t k = 0; k < points.size(); ++k) rigidities[k] = stiffness[points[k]] * perUnit;
 }
 
-/// Returns the load of 1 N on the footprint about the middle node, where there is a sheet.
-/// \param covered  share of the sheet at the nodes [1]; empty: all
-NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings, const NodeField& covered)
-{
-    NodeField load = footprintLoad(grid, 1, grid.sizeX() / 2, grid.sizeZ() / 2, settings.footprintRadius);
-    if (covered.values().empty()) return load;
-    const Footprint whole(load);
-    return onSheet(whole, covered, whole).load(grid);
-}
-
-NodeField unitLoad(const Patch& patch, const PatchSettings& settings)
-{
-    return unitLoad(patch.plate.grid, settings, patch.covered);
-}
-
 /// \param ranks  of the points of the touched surface
 void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::uint32_t> ranks,
                   const PatchSettings& settings)
@@ -558,125 +435,6 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     if (object.stiffening().empty()) return;
     patch.stiffeningAtNodes = std::move(next->rigidity);
     for (double& growth : patch.stiffeningAtNodes.values()) growth = stiffeningOf(growth);
-}
-
-// --- 2.5, equations 6 to 8: the plate bends under a unit force
-
-void keep(Patch& patch, const GridPart& part, PlateSolution solution, double compliance)
-{
-    patch.response      = part.onWhole(solution.deflection);
-    patch.report        = std::move(solution.report);
-    patch.compliance    = compliance;
-    patch.times.prepare = patch.report.setUpMilliseconds;
-    patch.times.solve -= patch.times.prepare; // which the clock of this stage counts too
-}
-
-void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
-{
-    const StageClock  clock(patch.times.solve);
-    const GridPart    part(patch);
-    const Footprint   finger = part.of(Footprint(unitLoad(patch, settings)));
-    FootprintSolution solved =
-        patch.curvature
-            ? solver.solveFootprints(part.of(shellOf(patch)), {&finger, 1}, 0, settings.tolerance, settings.tolerance)
-            : solver.solveFootprints(part.of(patch.plate), {&finger, 1}, 0, settings.tolerance, settings.tolerance);
-    keep(patch, part, std::move(solved.whole), solved.responses.front().work + bodyFelt(patch));
-}
-
-/// Bends the plate also under each footprint of a lattice.
-void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLattice& lattice, PlateSolver& solver,
-               ComplianceTable& table)
-{
-    const StageClock clock(patch.times.solve);
-    const GridPart   part(patch);
-    const auto       solved = [&](const FootprintLattice& loads) {
-        return patch.curvature
-                         ? solveTable(part.of(shellOf(patch)), patch.below, loads, solver, settings.tolerance, table)
-                         : solveTable(part.of(patch.plate), patch.below, loads, solver, settings.tolerance, table);
-    };
-    const bool     whole  = !patch.covered.values().empty();
-    MiddleSolution middle = solved(whole ? part.of(onSheet(lattice, patch)) : lattice);
-    if (whole) fillContact(sheetRigidity(patch), lattice, table);
-    addToCompliances(table, bodyFelt(patch));
-    table.chart = patch.chart;
-    fillStiffening(patch.stiffeningAtNodes, lattice, table);
-    keep(patch, part, std::move(middle.solution), middle.compliance + bodyFelt(patch));
-}
-
-// --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
-
-/// Interpolates the response of the points bilinearly; what follows no place in the window does not move.
-void movePoints(Patch& patch)
-{
-    const StageClock clock(patch.times.lift);
-    patch.pointResponse = responsesAt(patch, patch.followed);
-}
-
-/// \param finger  its footprint in the middle, as if the sheet had no border: also beyond it tables have a contact
-void findStiffness(Patch& patch, const SoftObject& object, const PatchSettings& settings, const Footprint& finger)
-{
-    const bool   whole     = !patch.covered.values().empty();
-    const double rigidity  = rigidityUnder(finger, whole ? sheetRigidity(patch) : patch.plate.rigidity);
-    const double modulus   = object.material().modulus(rigidity);
-    patch.contactStiffness = contactStiffness(modulus, settings.footprintRadius, object.material().thickness);
-    patch.feltStiffness    = feltStiffness(settings.forceLaw, patch.contactStiffness, patch.compliance);
-    patch.stiffening       = object.material().stiffening;
-    if (!patch.stiffeningAtNodes.values().empty())
-        patch.stiffening = responseOf(Footprint(unitLoad(patch, settings)), patch.stiffeningAtNodes).work;
-}
-
-/// Returns whether a grid of twice the spacing carries the fingertip.
-bool hasCoarseGrid(const Patch& patch, const PatchSettings& settings)
-{
-    return patch.plate.grid.cellsX % 4 == 0 && settings.footprintRadius >= 2 * patch.plate.grid.spacingX;
-}
-
-/// Of the solutions that a law of large deflections consists of [1]: its own model is right to a hundredth.
-constexpr double kShapesTolerance = 1e-3;
-
-/// Finds the law on a grid of twice the spacing, in a quarter of the time: its forces are off by 0.4 % there.
-LargeLaw coarseLaw(const Patch& patch, const PatchSettings& settings, const Shell& fine, double reach,
-                   PlateSolver& solver)
-{
-    const GridPart  part  = GridPart(patch).everySecond();
-    const Shell     whole = everySecondOf(fine), shell = part.of(whole);
-    const NodeField load =
-        part.of(unitLoad(whole.bending.grid, settings, everySecondOf(patch.covered, whole.bending.grid)));
-    const Footprint finger(load);
-    const NodeField linear =
-        (patch.curvature ? solver.solveFootprints(shell, {&finger, 1}, 0, kShapesTolerance, kShapesTolerance)
-                         : solver.solveFootprints(shell.bending, {&finger, 1}, 0, kShapesTolerance, kShapesTolerance))
-            .whole.deflection;
-    LargeLaw     law   = largeLaw(shell, load, linear, reach, solver, kShapesTolerance);
-    const double wrong = law.tangent.front() * dot(unitLoad(patch, settings), patch.response);
-    for (LargeLaw::Values* values : {&law.force, &law.tangent})
-        for (double& value : *values) value /= wrong; // it begins as on the fine grid
-    return law;
-}
-
-/// Finds how the plate's force goes on where the dent is as deep as the sheet is thick, if the settings ask for it.
-/// \param quick  for a hand that moves
-void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solver, bool quick)
-{
-    if (settings.large == Large::off) return;
-    constexpr double kTrusted = 2; // thicknesses, see LargeLaw [1]
-    const StageClock clock(patch.times.solve);
-    const Shell      shell = shellOf(patch);
-    const double     reach = kTrusted * patch.thickness;
-    const GridPart   part(patch);
-    if (settings.forceLaw != ForceLaw::series)
-        patch.linearBecause = std::string("the force law ") + name(settings.forceLaw) + " does not feel the plate";
-    else if (const auto why = whyUnsolvable(shell))
-        patch.linearBecause = *why;
-    else
-        try {
-            patch.large = quick && hasCoarseGrid(patch, settings)
-                              ? coarseLaw(patch, settings, shell, reach, solver)
-                              : largeLaw(part.of(shell), part.of(unitLoad(patch, settings)), part.of(patch.response),
-                                         reach, solver, std::max(settings.tolerance, kShapesTolerance));
-        } catch (const Error& error) {
-            patch.linearBecause = error.what();
-        }
 }
 
 constexpr double kCubes[] = {1, 4}; ///< along a cell, of which one point each is taken, the first that will do [1]
@@ -751,8 +509,8 @@ std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Co
     return {};
 }
 
-/// Does everything up to the plate; false if the points determine no surface.
-bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+/// Does everything up to the plate, as far as the points determine a surface.
+void makePlate(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings,
                const std::optional<Frame>& carried)
 {
     Ball           ball    = gatherPoints(patch, object, contact, settings); // 2.1: the points near the contact,
@@ -769,7 +527,6 @@ bool makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
         patch.bodyCompliance = bodyCompliance(patch, object, settings);
     }
     patch.gathered = std::move(ball.points);
-    return patch.deformed();
 }
 
 } // namespace
@@ -789,17 +546,25 @@ void prepareTouch(const SoftObject& object, const PatchSettings& given)
             static_cast<void>(object.coarse(side));
 }
 
+Patch windowAbout(const SoftObject& object, const Contact& contact, const PatchSettings& given,
+                  const std::optional<Frame>& carried)
+{
+    const PatchSettings settings = settledFor(object, given);
+    Patch               patch;
+    patch.coarse = coarseFor(object, contact, settings);
+    makePlate(patch, usedOf(patch, object), contact, settings, carried);
+    return patch;
+}
+
 Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& given, PlateSolver& solver,
              const std::optional<Frame>& carried)
 {
     const PatchSettings settings = settledFor(object, given);
-    Patch               patch;
-    patch.coarse           = coarseFor(object, contact, settings);
-    const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
-    if (!makePlate(patch, used, contact, settings, carried)) return patch;
-    bendPlate(patch, settings, solver);  // 2.5: and bends as a plate under a unit force;
-    movePoints(patch);                   // 2.6: the plate moves the points,
-    findStiffness(patch, used, settings, //      and with the contact it is what the hand feels,
+    Patch               patch    = windowAbout(object, contact, settings, carried);
+    if (!patch.deformed()) return patch;
+    bendPlate(patch, settings, solver);                   // 2.5: and bends as a plate under a unit force;
+    movePoints(patch);                                    // 2.6: the plate moves the points,
+    findStiffness(patch, usedOf(patch, object), settings, //      and with the contact it is what the hand feels,
                   Footprint(unitLoad(patch.plate.grid, settings, {})));
     pressDeeper(patch, settings, solver, false); //      also where it is pressed far.
     return patch;
@@ -827,13 +592,11 @@ Patch deformWithTable(const SoftObject& object, const Contact& contact, const Pa
                       ComplianceTable& table)
 {
     const PatchSettings settings = settledFor(object, given);
-    Patch               patch;
-    patch.coarse           = coarseFor(object, contact, settings);
-    const SoftObject& used = patch.coarse ? patch.coarse->object() : object;
-    if (!makePlate(patch, used, contact, settings, carried)) return patch;
+    Patch               patch    = windowAbout(object, contact, settings, carried);
+    if (!patch.deformed()) return patch;
     bendPlate(patch, settings, lattice, solver, table);
     movePoints(patch);
-    findStiffness(patch, used, settings, lattice.loads[lattice.loads.size() / 2]);
+    findStiffness(patch, usedOf(patch, object), settings, lattice.loads[lattice.loads.size() / 2]);
     pressDeeper(patch, settings, solver, true);
     return patch;
 }
@@ -849,10 +612,11 @@ std::optional<double> coarseCompliance(const Patch& patch, const PatchSettings& 
         blurAsIfCoarser(shell, patch.coarse ? 0 : patch.spacing); // of means as of all points
     shell = everySecondOf(shell);
     if (whyUnsolvable(shell.bending)) return {};
-    const GridPart   part   = GridPart(patch).everySecond();
-    const PlateGrid& grid   = shell.bending.grid;
-    const Footprint  finger = part.of(Footprint(unitLoad(grid, settings, everySecondOf(patch.covered, grid))));
-    const auto       of     = [&](const auto& what) {
+    const GridPart   part = GridPart(patch).everySecond();
+    const PlateGrid& grid = shell.bending.grid;
+    const Footprint  finger =
+        part.of(Footprint(unitLoad(grid, settings, everySecondOf(patch.covered, grid), pressedPlace(patch))));
+    const auto of = [&](const auto& what) {
         return solver.solveFootprints(what, {&finger, 1}, 0, settings.tolerance, PlateSolver::kAsWorks)
             .responses.front()
             .work;
@@ -867,7 +631,7 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
     if (!patch.deformed() || !hasCoarseGrid(patch, settings)) return {};
     const auto compliance = coarseCompliance(patch, settings, solver);
     if (!compliance) return {};
-    return std::abs(*compliance + bodyFelt(patch) - patch.compliance) / 3 / patch.compliance;
+    return std::abs(*compliance + bodyFelt(patch) + patch.twist - patch.compliance) / 3 / patch.compliance;
 }
 
 std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& patch, const PatchSettings& settings,

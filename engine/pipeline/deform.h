@@ -24,6 +24,10 @@ void prepareTouch(const SoftObject& object, const PatchSettings& settings);
 /// Does the same, with the plate solved by the reference solver.
 [[nodiscard]] Patch deform(const SoftObject& object, const Contact& contact, const PatchSettings& settings);
 
+/// Does what deform() does up to the plate, with nothing solved: a window in which movePatch() presses.
+[[nodiscard]] Patch windowAbout(const SoftObject& object, const Contact& contact, const PatchSettings& settings,
+                                const std::optional<Frame>& carried = {});
+
 struct PatchWithTable {
     Patch                          patch;
     std::optional<ComplianceTable> table; ///< about the patch's chart; empty if it is not deformed()

@@ -52,6 +52,31 @@ double bentSize(const Patch& patch)
     return patch.covered.values().empty() ? side : side / 2;
 }
 
+const SoftObject& usedOf(const Patch& patch, const SoftObject& object) noexcept
+{
+    return patch.coarse ? patch.coarse->object() : object;
+}
+
+ChartPoint pressedPlace(const Patch& patch) noexcept
+{
+    return patch.moved ? patch.moved->place : ChartPoint{};
+}
+
+const Chart& chartAtContact(const Patch& patch) noexcept
+{
+    return patch.moved ? patch.moved->chart : patch.chart;
+}
+
+GridNode nodeAtContact(const Patch& patch) noexcept
+{
+    const PlateGrid& grid = patch.window.grid;
+    const ChartPoint at   = pressedPlace(patch);
+    const auto       node = [](double from, double spacing, int cells) {
+        return std::clamp(cells / 2 + int(std::lround(from / spacing)), 0, cells);
+    };
+    return {node(at.x, grid.spacingX, grid.cellsX), node(at.z, grid.spacingZ, grid.cellsZ)};
+}
+
 double bodyFelt(const Patch& patch) noexcept
 {
     const PlateEdges& edges = patch.plate.edges;
@@ -82,8 +107,8 @@ NodeField sheetRigidity(const Patch& patch)
 
 double rigidityAtContact(const Patch& patch)
 {
-    const PlateGrid& grid = patch.plate.grid;
-    return sheetRigidity(patch, std::size_t(grid.cellsX / 2 * grid.nodesZ() + grid.cellsZ / 2));
+    const auto [i, j] = nodeAtContact(patch);
+    return sheetRigidity(patch, std::size_t(i * patch.plate.grid.nodesZ() + j));
 }
 
 std::pair<double, double> rigiditiesOfSheet(const Patch& patch)

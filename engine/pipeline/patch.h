@@ -92,9 +92,9 @@ struct PatchSettings {
 /// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what
 /// it spans. One of a dent is as dentWindow() says; that takes milliseconds, so settle once before many touches. One
 /// of the object is twice as wide as the object is across, as far as extentOf() finds that, so that it holds all of it
-/// about any contact, however it is turned. Its cells are as wide as `window` and `cells` say, but no finer than a fourth of the fingertip, and 128 of
-/// them or more, half of `cells`, go into the length of a strip that spreads as far as the object; there are 512 at
-/// most. Its sides, in the void, are free. A second time changes nothing.
+/// about any contact, however it is turned. Its cells are as wide as `window` and `cells` say, but no finer than a
+/// fourth of the fingertip, and 128 of them or more, half of `cells`, go into the length of a strip that spreads as far
+/// as the object; there are 512 at most. Its sides, in the void, are free. A second time changes nothing.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.
@@ -107,6 +107,12 @@ struct StageTimes {
     [[nodiscard]] double total() const noexcept { return gather + fit + project + resample + prepare + solve + lift; }
 };
 
+/// Where a patch is pressed that movePatch() has moved on.
+struct PressedElsewhere {
+    ChartPoint place{}; ///< in the patch's chart [m]
+    Chart      chart;   ///< about the contact
+};
+
 /// The response of the neighbourhood to a unit force at the contact.
 struct Patch {
     Contact         contact;
@@ -114,10 +120,11 @@ struct Patch {
     Chart           chart;
     bool            sideUnsure = false; ///< the finger's side was guessed, and the cloud is open there
     bool            normalFelt =
-        false; ///< the points around determine no surface that agrees with the hand's: the proxy's is taken
-    double      unrolled = 0; ///< share of the exponential map in the positions [1]; 0: the sphere follows the surface
-    PatchWindow window;
-    Plate       plate; ///< rigidity at the nodes, edges, foundation
+        false;           ///< the points around determine no surface that agrees with the hand's: the proxy's is taken
+    double unrolled = 0; ///< share of the exponential map in the positions [1]; 0: the sphere follows the surface
+    std::optional<PressedElsewhere> moved{}; ///< empty: it is pressed in the middle of its window
+    PatchWindow                     window;
+    Plate                           plate; ///< rigidity at the nodes, edges, foundation
     NodeField
         membraneCompliance{}, ///< 1/(E h) at the nodes [m/N], where the settings ask for a shell or large deflections
         stressBed{};          ///< see Shell::stressBed; empty: the object does not end in the window
@@ -151,6 +158,7 @@ struct Patch {
     std::string             linearBecause;        ///< why it is not there although it was asked for
     NodeField               response;             ///< deflection per force at the nodes [m/N]
     double                  bodyCompliance   = 0; ///< of a body that the window is cut from, in series [m/N]
+    double                  twist            = 0; ///< by which free borders resist less, part of c [m/N]
     double                  compliance       = 0; ///< c: response averaged over the footprint, and the body's [m/N]
     double                  contactStiffness = 0; ///< k_c [N/m]
     double                  feltStiffness    = 0; ///< [N/m]
@@ -176,8 +184,25 @@ struct Patch {
     [[nodiscard]] bool deformed() const noexcept { return sphere.usable(); }
 
     /// Returns the unit vector along which a force presses: into the surface.
-    [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -chart.frame.normal; }
+    [[nodiscard]] glm::dvec3 forceDirection() const noexcept { return -(moved ? moved->chart : chart).frame.normal; }
 };
+
+/// Returns the object that the patch's points are of.
+[[nodiscard]] const SoftObject& usedOf(const Patch& patch, const SoftObject& object) noexcept;
+
+/// Returns the place in the patch's chart that is pressed [m]: its origin, unless the patch was moved.
+[[nodiscard]] ChartPoint pressedPlace(const Patch& patch) noexcept;
+
+/// Returns the chart about the contact: the patch's, unless it was moved.
+[[nodiscard]] const Chart& chartAtContact(const Patch& patch) noexcept;
+
+/// A node of a patch's grid, by its number along each axis.
+struct GridNode {
+    int i = 0, j = 0;
+};
+
+/// Returns the node nearest to what is pressed.
+[[nodiscard]] GridNode nodeAtContact(const Patch& patch) noexcept;
 
 /// Returns whether a node lies on the sheet, not beyond a border of an object that the window spans.
 [[nodiscard]] bool isOnSheet(const Patch& patch, std::size_t node);

@@ -173,6 +173,12 @@ bool isStressFree(const Shell& shell) noexcept
            std::ranges::all_of(shell.stressBed.values(), [](double k) { return k == 0; });
 }
 
+std::array<std::size_t, 3> pinsOfStress(const PlateGrid& grid) noexcept
+{
+    const auto alongZ = std::size_t(grid.cellsZ);
+    return {0, alongZ, std::size_t(grid.cellsX) * (alongZ + 1)};
+}
+
 std::optional<std::string> whyUnsolvable(const Shell& shell)
 {
     if (auto why = whyUnsolvable(shell.bending)) return why;

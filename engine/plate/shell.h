@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -50,6 +51,9 @@ struct Shell {
 /// Returns whether phi is held by no side and no bed: it is then known but for a linear function, which carries no
 /// force.
 [[nodiscard]] bool isStressFree(const Shell& shell) noexcept;
+
+/// Returns the nodes at which such a function may be held: three corners.
+[[nodiscard]] std::array<std::size_t, 3> pinsOfStress(const PlateGrid& grid) noexcept;
 
 /// The work that a load does beyond that along w because the sheet is sheared across its thickness as well, to the
 /// first order in thickness over length: the forces Q = div M across it, times Q / (5/6 G h).

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 
 #include <glm/geometric.hpp>
 
 #include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
 #include "engine/force/ahead.h"
+#include "engine/pipeline/move_patch.h"
 #include "engine/pipeline/press.h"
 #include "engine/session/approach.h"
 
@@ -22,10 +24,12 @@ FootprintLattice latticeOf(const Scene& scene, const PatchSettings& settings, co
     const auto of = [&](int side) { return footprintLattice(object, settings, side, solver); };
     if (scene.complianceLaw != ComplianceLaw::table) return of(1);
     if (scene.tableSize > 0) return of(scene.tableSize);
-    // An object's answer holds as far as its table reaches, and takes a hand's longer than a window's.
-    const int wanted = settings.windowOf == WindowOf::object
-                           ? ComplianceTable::kMostSide
-                           : tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius);
+    // In an object's window the reach that a table has over the time that it takes hardly depends on its size, and how
+    // far a hand goes astray of where it was seen to go grows with the square of that time.
+    constexpr int kOfObject = 5;
+    const int     wanted    = settings.windowOf == WindowOf::object
+                                  ? kOfObject
+                                  : tableSide(scene.complianceLaw, 1 / scene.deformationRate, scene.patch.footprintRadius);
     for (int side = wanted; side > 3; side -= 2) {
         try {
             return of(side);
@@ -53,25 +57,33 @@ void Deformation::repaint(const SoftObject& object)
     PALP_EXPECT(object.size() == object_->size(), "a painted cloud has the points that it had before");
     object_ = &object;
     kept_.reset();
+    middle_.reset();
 }
 
 DeformationAnswer Deformation::solve(const Touch& touch, double lead)
 {
     DeformationAnswer answer = solveSomewhere(touch, lead);
-    answer.takeover          = solver_.takeoverSince(told_);
-    told_                    = solver_.counts().takeovers;
+    if (!answer.update && touch.touching) answer.ends = ended(touch);
+    answer.takeover = solver_.takeoverSince(told_);
+    told_           = solver_.counts().takeovers;
     return answer;
 }
 
 DeformationAnswer Deformation::solveSomewhere(const Touch& touch, double lead)
 {
     if (!touch.touching) return solveAhead(touch, lead);
-    const glm::dvec3  ahead = aheadOf(law_, touch.point, touch.velocity, lead);
-    DeformationAnswer there = solveAt({ahead, touch.outward, true, true}, touch);
-    if (there.update || ahead == touch.point) return there;
-    DeformationAnswer here = solveAt({touch.point, touch.outward, true, true}, touch);
-    if (here.why.empty()) here.why = there.why;
-    return here;
+    const Contact here{touch.point, touch.outward, true, true};
+    Contact       ahead = here;
+    ahead.point         = aheadOf(law_, touch.point, touch.velocity, lead);
+    const bool moves    = ahead.point != here.point;
+    if (auto answer = solveInWindows(ahead, touch)) return std::move(*answer);
+    if (moves) // it may turn back before it leaves the window
+        if (auto answer = solveInWindows(here, touch)) return std::move(*answer);
+    DeformationAnswer there = solveAt(ahead, touch);
+    if (there.update || !moves) return there;
+    DeformationAnswer own = solveAt(here, touch);
+    if (own.why.empty()) own.why = there.why;
+    return own;
 }
 
 /// Solves for where a hand in free space will land. Nobody is touching yet, so a failure is none: a rim may be what is
@@ -80,7 +92,9 @@ DeformationAnswer Deformation::solveAhead(const Touch& touch, double lead)
 {
     const auto landing = landingOf(*object_, {touch.point, touch.velocity}, lead);
     if (!landing) return {};
-    DeformationAnswer answer = solveAt({landing->place, landing->outward, true, false}, touch);
+    const Contact contact{landing->place, landing->outward, true, false};
+    if (auto answer = solveInWindows(contact, touch)) return std::move(*answer);
+    DeformationAnswer answer = solveAt(contact, touch);
     answer.why.clear();
     return answer;
 }
@@ -113,28 +127,95 @@ DeformationAnswer Deformation::keptFor(const Touch& touch)
     slot->table.time                         = touch.time;
     Patch patch                              = kept_->patch;
     patch.times                              = {};
-    return {slot, std::move(patch), {}, {}, true};
+    return {slot, std::move(patch), {}};
+}
+
+/// Returns the last answer as one that lasts no longer: there is none for what is touched now. It keeps its time. Null
+/// if there is none that lasts.
+std::shared_ptr<PatchUpdate> Deformation::ended(const Touch& touch)
+{
+    if (!kept_) return nullptr;
+    const std::shared_ptr<PatchUpdate>& slot = freeSlot();
+    *slot                                    = kept_->update;
+    slot->table.sequence                     = touch.sequence;
+    slot->table.lasts                        = false;
+    kept_.reset();
+    return slot;
+}
+
+/// Makes the answer of a patch whose table is in the slot.
+DeformationAnswer Deformation::answerOf(Patch patch, const Touch& touch, const std::shared_ptr<PatchUpdate>& slot)
+{
+    PatchUpdate& update   = *slot;
+    frame_                = chartAtContact(patch).frame;
+    update.table.sequence = touch.sequence;
+    update.table.time     = touch.time;
+    update.rigidity       = rigidityAtContact(patch);
+    update.mostResponse   = mostResponse(patch);
+    update.errorEstimate  = patch.report.errorEstimate.value_or(0);
+    update.iterations     = patch.report.iterations.value_or(0);
+    update.shape          = depthShapeOf(patch);
+    update.table.lasts    = settings_.windowOf == WindowOf::object;
+    if (update.table.lasts) kept_ = {update, patch};
+    return {slot, std::move(patch), {}};
+}
+
+/// Answers by what is kept, or in a window that is there: the middle's first, so that a place feels alike whichever way
+/// the hand has come. Nothing where that takes a new one.
+std::optional<DeformationAnswer> Deformation::solveInWindows(const Contact& contact, const Touch& touch)
+{
+    if (settings_.windowOf != WindowOf::object) return {};
+    if (isKeptFor(contact)) return keptFor(touch);
+    const Patch* const middle = middleFor(contact);
+    if (middle)
+        if (auto answer = moved(*middle, contact, touch)) return answer;
+    const bool hasOwn = kept_ && !(middle && kept_->patch.chart.origin == middle->chart.origin);
+    return hasOwn ? moved(kept_->patch, contact, touch) : std::nullopt;
+}
+
+std::optional<DeformationAnswer> Deformation::moved(const Patch& from, const Contact& contact, const Touch& touch)
+{
+    try {
+        const std::shared_ptr<PatchUpdate>& slot = freeSlot();
+        auto patch = movePatch(from, *object_, contact, settings_, lattice_, solver_, frame_, slot->table);
+        if (!patch) return {};
+        return answerOf(std::move(*patch), touch, slot);
+    } catch (const std::exception&) { // a window of its own may have an answer, or says why there is none
+        return {};
+    }
+}
+
+/// Returns the window about the middle of an object that it spans, for the contact's side; null: there is none that
+/// suits all of the object.
+const Patch* Deformation::middleFor(const Contact& contact)
+{
+    if (!middle_) {
+        glm::dvec3 sum{};
+        for (const glm::dvec3& point : object_->positions()) sum += point;
+        const auto nearest = object_->index().nearest(sum / double(object_->size()), 1).front().point;
+        middle_.emplace(object_->positions()[nearest], object_->survey().normal(nearest));
+    }
+    const bool isFront = glm::dot(middle_->normal, contact.outward) >= 0;
+    auto&      window  = middle_->windows[isFront ? 0 : 1];
+    if (!window) {
+        window.emplace();
+        try {
+            Patch of = windowAbout(*object_, {middle_->place, isFront ? middle_->normal : -middle_->normal, true, true},
+                                   settings_);
+            if (of.deformed() && !of.normalFelt && of.flatBecause.empty()) *window = std::move(of);
+        } catch (const std::exception&) { // a piece that nothing holds, say
+        }
+    }
+    return window->deformed() ? &*window : nullptr;
 }
 
 DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touch)
 {
-    if (isKeptFor(contact)) return keptFor(touch);
     try {
-        const std::shared_ptr<PatchUpdate>& slot   = freeSlot();
-        PatchUpdate&                        update = *slot;
-        Patch patch = deformWithTable(*object_, contact, settings_, lattice_, solver_, frame_, update.table);
+        const std::shared_ptr<PatchUpdate>& slot = freeSlot();
+        Patch patch = deformWithTable(*object_, contact, settings_, lattice_, solver_, frame_, slot->table);
         if (!patch.deformed()) return {{}, {}, "the points around the contact determine no surface"};
-        frame_                = patch.chart.frame;
-        update.table.sequence = touch.sequence;
-        update.table.time     = touch.time;
-        update.rigidity       = rigidityAtContact(patch);
-        update.mostResponse   = mostResponse(patch);
-        update.errorEstimate  = patch.report.errorEstimate.value_or(0);
-        update.iterations     = patch.report.iterations.value_or(0);
-        update.shape          = depthShapeOf(patch);
-        const bool lasts      = settings_.windowOf == WindowOf::object;
-        if (lasts) kept_ = {update, patch};
-        return {slot, std::move(patch), {}, {}, lasts};
+        return answerOf(std::move(patch), touch, slot);
     } catch (const Error& error) { // the window is off the object, or the plate has no solution there
         return {{}, {}, error.what()};
     }

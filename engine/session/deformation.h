@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -16,10 +17,11 @@ struct DeformationAnswer {
     /// For the servo, where the solver wrote it; null: nothing could be solved there. It stays as it is as long as
     /// somebody has a share in it, also beyond the life of the deformation. The servo's thread takes no share.
     std::shared_ptr<PatchUpdate> update;
-    std::optional<Patch>         patch;         ///< for an observer; there whenever `update` is
-    std::string                  why;           ///< a failure, also one that a second try mended; may be empty
-    std::string                  takeover{};    ///< who solves plates now, and why; empty: who did before
-    bool                         lasts = false; ///< wherever its table reaches it is as good as one of now
+    std::optional<Patch>         patch;      ///< for an observer; there whenever `update` is
+    std::string                  why;        ///< a failure, also one that a second try mended; may be empty
+    std::string                  takeover{}; ///< who solves plates now, and why; empty: who did before
+    /// Where there is no update although the last one lasts: that one, which does so no longer. Else null.
+    std::shared_ptr<PatchUpdate> ends{};
 };
 
 /// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of
@@ -40,7 +42,9 @@ public:
     ///
     /// Of an object that the window spans, the last answer holds for what is touched within half the reach of its
     /// table, which has its answers there. What is drawn, and the law of large deflections, are those of the place that
-    /// it was solved for, up to 1.5 radii of the fingertip away.
+    /// it was solved for, a radius of the fingertip away and more. Further off, a window about the object's middle is
+    /// pressed elsewhere, see movePatch(), for the touch itself where it is not as good for the place ahead. Where it
+    /// is for neither, the touch has a window of its own.
     ///
     /// In free space it solves for where the hand will land, see landingOf(), so that a tap finds a table that is made
     /// for its place. Where the surface is too far away, or has no answer there, there is no update and no reason.
@@ -75,11 +79,16 @@ public:
     [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 
 private:
-    [[nodiscard]] DeformationAnswer                   solveSomewhere(const Touch& touch, double lead);
-    [[nodiscard]] DeformationAnswer                   solveAhead(const Touch& touch, double lead);
-    [[nodiscard]] DeformationAnswer                   solveAt(const Contact& contact, const Touch& touch);
-    [[nodiscard]] bool                                isKeptFor(const Contact& contact) const;
-    [[nodiscard]] DeformationAnswer                   keptFor(const Touch& touch);
+    [[nodiscard]] DeformationAnswer                solveSomewhere(const Touch& touch, double lead);
+    [[nodiscard]] DeformationAnswer                solveAhead(const Touch& touch, double lead);
+    [[nodiscard]] DeformationAnswer                solveAt(const Contact& contact, const Touch& touch);
+    [[nodiscard]] std::optional<DeformationAnswer> solveInWindows(const Contact& contact, const Touch& touch);
+    [[nodiscard]] std::optional<DeformationAnswer> moved(const Patch& from, const Contact& contact, const Touch& touch);
+    [[nodiscard]] const Patch*                     middleFor(const Contact& contact);
+    [[nodiscard]] bool                             isKeptFor(const Contact& contact) const;
+    [[nodiscard]] DeformationAnswer                keptFor(const Touch& touch);
+    [[nodiscard]] std::shared_ptr<PatchUpdate>     ended(const Touch& touch);
+    [[nodiscard]] DeformationAnswer answerOf(Patch patch, const Touch& touch, const std::shared_ptr<PatchUpdate>& slot);
     [[nodiscard]] const std::shared_ptr<PatchUpdate>& freeSlot();
 
     const SoftObject*    object_; ///< never null
@@ -95,6 +104,14 @@ private:
         Patch       patch;
     };
     std::optional<Kept> kept_; ///< the last answer, where the window spans the object
+    /// The middle of an object that the window spans, with a window for each side from which it was touched.
+    struct Middle {
+        glm::dvec3                          place{};   ///< [m]
+        glm::dvec3                          normal{};  ///< [1]
+        std::array<std::optional<Patch>, 2> windows{}; ///< from where the normal points, and from behind; not
+                                                       ///< deformed(): there is none
+    };
+    std::optional<Middle> middle_;
     /// Memory for answers. One that nobody else has a share in is free: in a session there are four at most, and one.
     std::vector<std::shared_ptr<PatchUpdate>> slots_;
 };

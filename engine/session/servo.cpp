@@ -101,6 +101,13 @@ double loadAt(const DepthLaw& law, double depth, double c) noexcept
     return std::max(0.0, (depth - law.force(depth) * (1 / law.stiffness - c)) / c);
 }
 
+/// Returns whether a table is as good as one of now, for as long as nothing else says that its thread is alive.
+bool lastsStill(const LocalCompliance& handed) noexcept
+{
+    constexpr double kLongest = 2; // [s]
+    return handed.lasts && handed.age < kLongest;
+}
+
 } // namespace
 
 ForceHalf::WantedForce ForceHalf::wantedForce(const std::optional<LocalCompliance>& local, double dt, const Hand& hand,
@@ -228,14 +235,17 @@ void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand, const WantedF
 ///
 /// A contact that begins with the homogeneous law, or with nothing, has all of that time anew. One that begins on a
 /// table has what its predecessors left of it: a table that is too old is not felt again because the hand was lifted.
-double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest, bool tableInUse) noexcept
+/// While a table that lasts reaches the contact nothing is asked: the next window of an object may take half a second.
+double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest,
+                               const std::optional<LocalCompliance>& handed) noexcept
 {
     constexpr double kOldest = 0.25, kPeriods = 3; // [s] a hand moves 5 cm in it; [1]
     if (newest && newest->table.sequence != answered_ && newest->table.usable()) {
         answered_ = newest->table.sequence;
         asked_    = now.time - newest->table.time;
     }
-    if (touching && !touched_ && !tableInUse) asked_ = 0;
+    const bool tableInUse = handed && !handed->guessed;
+    if ((touching && !touched_ && !tableInUse) || (handed && lastsStill(*handed))) asked_ = 0;
     touched_ = touching;
     if (touching) asked_ += now.dt;
     return touching ? asked_ - std::max(kOldest, kPeriods * patchPeriod_) : 0;
@@ -257,7 +267,7 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     leanOn(held, hand, want);
 
     GovernorInput in = governorInput(now, hand, held, want);
-    in.overdue       = tableOverdue(now, touch.touching, newest, handed && !handed->guessed);
+    in.overdue       = tableOverdue(now, touch.touching, newest, handed);
 
     const GovernorOutput out    = governor_.step(in);
     TickRecord           record = recordOf(now, hand, held, want, out);
@@ -274,7 +284,8 @@ TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyCon
     constexpr double kStalePeriods = 3; // two are ordinary: one to solve, one in use [1]
     record.faults =
         static_cast<std::uint32_t>(out.fault) |
-        flag(SessionFlag::stalePatch, record.patchAge > kStalePeriods * patchPeriod_) |
+        flag(SessionFlag::stalePatch,
+             record.patchAge > kStalePeriods * patchPeriod_ && !(handed && lastsStill(*handed))) |
         flag(SessionFlag::beyondTable, touch.touching && handed && handed->clamped) |
         flag(SessionFlag::noPatch, touch.touching && !handed) | flag(SessionFlag::proxyLimited, held.limited) |
         flag(SessionFlag::beyondTheory, record.maxDeflection > thickness_ * (shape_.step > 0 ? 2 : 0.5)) |

@@ -211,7 +211,7 @@ private:
     void               follow(const PatchUpdate* newest, double dt, bool touching) noexcept;
 
     [[nodiscard]] double        tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest,
-                                             bool tableInUse) noexcept;
+                                             const std::optional<LocalCompliance>& handed) noexcept;
     [[nodiscard]] GovernorInput governorInput(const TickTime& now, const Hand& hand, const ProxyContact& held,
                                               const WantedForce& want) noexcept;
     [[nodiscard]] TickRecord    recordOf(const TickTime& now, const Hand& hand, const ProxyContact& held,

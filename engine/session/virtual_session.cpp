@@ -72,7 +72,7 @@ SessionSummary runVirtual(const SessionParts& parts, double seconds, const OnTic
                     summary.solve.add(secondsSince(began));
                     summary.addPatch(answer.update != nullptr, answer.why);
                 }
-                underWay = std::move(answer.update);
+                underWay = answer.update ? std::move(answer.update) : std::move(answer.ends);
             }
         }
         updates.take([&](const auto& update) { return update && &update->table == servo.tableInUse(); });

@@ -64,6 +64,33 @@ TEST(DirectShell, HasTheMatrixOfTheReference)
     }
 }
 
+/// What is held all around carries all forces, and nothing holds Airy's function: the matrix was singular by a linear
+/// one, which carries none, and domes were left to multigrid.
+TEST(DirectShell, NeedsNoBorderForItsStresses)
+{
+    Shell shell       = shellOf(square(48), disc(30), constant(1, 1, 0), 8);
+    shell.stressBed   = NodeField(shell.bending.grid);
+    shell.stressEdges = {Edge::free, Edge::free, Edge::free, Edge::free};
+    const auto loads  = lineOn(shell.bending.grid, 3);
+    const auto found  = DirectShell(shell, loads).solve(loads, 1, 1e-4);
+    ASSERT_TRUE(found);
+    const NodeField w = ReferenceShellSolver(shell).solve(loads[1].load(shell.bending.grid)).deflection;
+    EXPECT_NEAR(found->responses[1].work / felt(shell, loads[1], w).work, 1, 1e-6) << "rounding";
+}
+
+/// Its rounding is known after the first loads: those after it are not refined, and are as exact.
+TEST(DirectShell, LaterLoadsAreAsExact)
+{
+    const Shell shell = stripOf(shellOf(square(48), disc(30), constant(1, 0, 0), 8), 1e-6);
+    const auto  loads = lineOn(shell.bending.grid, 11);
+    DirectShell direct(shell, loads);
+    const auto  first = direct.solve(loads, 9, 1e-4), again = direct.solve(loads, 2, 1e-4);
+    ASSERT_TRUE(first && again);
+    for (std::size_t n = 0; n < loads.size(); ++n)
+        EXPECT_NEAR(again->responses[n].work / first->responses[n].work, 1, 1e-8) << n;
+    EXPECT_GT(*again->whole.report.errorEstimate, 0);
+}
+
 /// What is left out beyond a border, and what a millionth of the rigidity adds there, is felt by less than a thousandth:
 /// an arch that thrusts, whose works are the hundredth part of what is left without.
 TEST(DirectShell, LeavesNothingOutThatIsFelt)

@@ -468,6 +468,36 @@ TEST(Servo, AForceWhoseTableIsTooOldFadesAndEngagesAnewOnceThereAreTables)
     EXPECT_NEAR(again, most, 0.02 * most);
 }
 
+/// A table of an object is as good as one of now where it reaches, so that a solve of half a second ends no force. What
+/// says for two seconds nothing may be dead.
+TEST(Servo, ATableThatLastsIsNotTooOldWhereItReaches)
+{
+    const SheetSession session(sheetScene(kWart), HandMotion::press, 2);
+    struct Case {
+        bool   lasts;
+        double away, until; ///< [m] that the hand has gone; [s] after the last table that the force lives
+    };
+    for (const auto& [lasts, away, until] :
+         {Case{false, 0, 0.27}, Case{true, 0, 2.27}, Case{true, 1e-3, 2.27}, Case{true, 20e-3, 0.27}}) {
+        Servo                              servo(session.object, session.scene);
+        Deformation                        deformation(session.object, session.scene);
+        std::shared_ptr<const PatchUpdate> news;
+        double                             last = 0; // [s] with a force
+        for (int n = 0; n < 4500; ++n) {
+            const double time = 1e-3 * n;
+            glm::dvec3   hip  = session.hand.position(std::min(time, 0.055));
+            hip.x += std::clamp(time - 2, 0.0, 0.1) * away / 0.1;
+            const auto record = servo.tick({time, 1e-3}, {hip, {}}, news.get());
+            if (record.force != glm::dvec3(0)) last = time;
+            if (time >= 2 || n % 16 != 0 || !servo.touch().touching) continue;
+            auto own         = std::make_shared<PatchUpdate>(*deformation.solve(servo.touch(), 1.0 / 60).update);
+            own->table.lasts = lasts;
+            news             = std::move(own);
+        }
+        EXPECT_NEAR(last, 2 + until, 0.1) << lasts << " " << away << ": it fades, and is asked in a while";
+    }
+}
+
 /// The homogeneous law answers a contact for a quarter of a second, also the contact after one that waited in vain.
 TEST(Servo, EveryContactWithoutATableHasItsOwnQuarterOfASecond)
 {

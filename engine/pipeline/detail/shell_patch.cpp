@@ -215,6 +215,14 @@ std::string whyFlat(const Patch& patch, const SoftObject& object, const PatchSet
     return {};
 }
 
+void fillCurvatureAtContact(Patch& patch, const Material& material, double foundation)
+{
+    if (!patch.curvature) return;
+    const auto [i, j] = nodeAtContact(patch);
+    patch.principal   = principalOf(patch.curvature->x(i, j), patch.curvature->z(i, j), patch.curvature->xz(i, j));
+    patch.shellLength = lengthOf(patch, material, foundation);
+}
+
 void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings)
 {
     if (settings.large == Large::on || settings.theory == Theory::shell) fillMembrane(patch, object.material());
@@ -225,13 +233,8 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
         return;
     }
 
-    const Material& material = object.material();
-    const int       middle   = settings.cells / 2;
-    const double    x = patch.curvature->x(middle, middle), z = patch.curvature->z(middle, middle),
-                 xz   = patch.curvature->xz(middle, middle);
-    patch.principal   = principalOf(x, z, xz);
-    patch.shellLength = lengthOf(patch, material, settings.foundation);
-    patch.sag         = sagOf(patch, object, points);
+    fillCurvatureAtContact(patch, object.material(), settings.foundation);
+    patch.sag = sagOf(patch, object, points);
     if (const auto why = whyUnsolvable(shellOf(patch))) {
         patch.flatBecause = *why;
         patch.curvature.reset();

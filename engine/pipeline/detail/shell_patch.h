@@ -16,6 +16,10 @@ namespace palp {
 /// \param points  of the touched surface, all that have a place in the chart
 void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points, const PatchSettings& settings);
 
+/// Fills in the principal curvatures at the contact and the length over which a dent dies away there.
+/// \param foundation  of the scene [Pa/m]
+void fillCurvatureAtContact(Patch& patch, const Material& material, double foundation);
+
 /// Returns the shell of a patch, a flat one of a patch that is not curved.
 /// \pre its membrane's compliance is known: the settings ask for a shell or large deflections
 [[nodiscard]] Shell shellOf(const Patch& patch);

@@ -175,6 +175,18 @@ void holdNodes(Patch& patch, const NodeField& shares, double width, double found
     plate.foundationShape = std::move(shape);
 }
 
+bool areOnOnePiece(const Patch& patch, const NodeField& a, const NodeField& b)
+{
+    const auto piece = touchedPiece(patch, a);
+    bool       some  = false;
+    for (std::size_t n = 0; n < piece.size(); ++n) {
+        if (!(b.values()[n] > 0) || !isOnSheet(patch, n)) continue;
+        if (!piece[n]) return false;
+        some = true;
+    }
+    return some;
+}
+
 void findApart(Patch& patch, const NodeField& load)
 {
     const auto piece = touchedPiece(patch, load);
@@ -209,10 +221,62 @@ double sheetRigidity(const Patch& patch, std::size_t node)
     return patch.covered.values().empty() ? own : own / shareOf(patch.covered.values()[node], patch.beyond);
 }
 
-Footprint onSheet(const Footprint& footprint, const NodeField& covered, const Footprint& instead)
+namespace {
+
+constexpr double kHardly = 0.05; ///< share of a footprint's force that is hardly any of it [1]
+
+/// Returns the share of a footprint's force that lies on the sheet [1].
+double shareOnSheet(const Footprint& footprint, const NodeField& covered)
 {
-    constexpr double kHardly = 0.05; // of the force [1]
-    double           whole = 0, sum = 0, changeX = 0, changeZ = 0;
+    double whole = 0, sum = 0;
+    for (const Footprint::Part& part : footprint.parts) {
+        whole += part.force;
+        sum += covered.values()[part.node] * part.force;
+    }
+    return sum / whole;
+}
+
+/// Returns a footprint moved by whole cells, without what lies beyond the grid then.
+Footprint movedBy(const Footprint& footprint, int alongX, int alongZ, const NodeField& grid)
+{
+    Footprint moved;
+    for (Footprint::Part part : footprint.parts) {
+        const int i = int(part.node) / grid.nodesZ() + alongX, j = int(part.node) % grid.nodesZ() + alongZ;
+        if (i < 0 || j < 0 || i >= grid.nodesX() || j >= grid.nodesZ()) continue;
+        part.node = std::uint32_t(i * grid.nodesZ() + j);
+        moved.parts.push_back(part);
+    }
+    return moved;
+}
+
+/// Returns a footprint whose middle lies on the node of the sheet that is nearest to it; itself, if there is none.
+Footprint movedOntoSheet(const Footprint& footprint, const NodeField& covered)
+{
+    double force = 0, x = 0, z = 0; // [N], [N] times nodes
+    for (const Footprint::Part& part : footprint.parts) {
+        force += part.force;
+        x += part.force * (int(part.node) / covered.nodesZ());
+        z += part.force * (int(part.node) % covered.nodesZ());
+    }
+    const int middleI = int(std::lround(x / force)), middleJ = int(std::lround(z / force));
+    int       alongX = 0, alongZ = 0;
+    double    least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < covered.nodesX(); ++i)
+        for (int j = 0; j < covered.nodesZ(); ++j) {
+            const double away = std::hypot(i - middleI, j - middleJ);
+            if (!(covered(i, j) > 0.5) || !(away < least)) continue;
+            least  = away;
+            alongX = i - middleI;
+            alongZ = j - middleJ;
+        }
+    return movedBy(footprint, alongX, alongZ, covered);
+}
+
+/// Returns a footprint's load on the sheet alone, of the same force.
+/// \pre some of it lies there
+Footprint cutToSheet(const Footprint& footprint, const NodeField& covered)
+{
+    double whole = 0, sum = 0, changeX = 0, changeZ = 0;
     for (const Footprint::Part& part : footprint.parts) {
         const double share = covered.values()[part.node];
         whole += part.force;
@@ -220,12 +284,7 @@ Footprint onSheet(const Footprint& footprint, const NodeField& covered, const Fo
         changeX += share * part.changeX;
         changeZ += share * part.changeZ;
     }
-    Footprint own = footprint;
-    if (!(sum > kHardly * whole)) {
-        own = instead;
-        for (Footprint::Part& part : own.parts) part.changeX = part.changeZ = 0;
-        return own;
-    }
+    Footprint    own  = footprint;
     const double more = whole / sum;
     for (Footprint::Part& part : own.parts) { // what moves beyond the border presses more on the rest
         const double share = covered.values()[part.node], force = more * share * part.force;
@@ -235,16 +294,33 @@ Footprint onSheet(const Footprint& footprint, const NodeField& covered, const Fo
     return own;
 }
 
+/// Returns a footprint that does not move.
+Footprint still(Footprint footprint)
+{
+    for (Footprint::Part& part : footprint.parts) part.changeX = part.changeZ = 0;
+    return footprint;
+}
+
+} // namespace
+
+Footprint onSheet(const Footprint& footprint, const NodeField& covered)
+{
+    if (shareOnSheet(footprint, covered) > kHardly) return cutToSheet(footprint, covered);
+    const Footprint beside = movedOntoSheet(footprint, covered);
+    return shareOnSheet(beside, covered) > kHardly ? still(cutToSheet(beside, covered)) : footprint;
+}
+
 FootprintLattice onSheet(const FootprintLattice& lattice, const Patch& patch)
 {
     FootprintLattice own     = lattice;
     const Footprint& middle  = lattice.loads[lattice.loads.size() / 2];
-    const Footprint  touch   = onSheet(middle, patch.covered, middle);
+    const Footprint  touch   = onSheet(middle, patch.covered);
     const auto       piece   = touchedPiece(patch, touch.load(patch.plate.grid));
     NodeField        covered = patch.covered; // another piece may be held by nothing
     for (std::size_t n = 0; n < covered.values().size(); ++n)
         if (!piece[n] && isOnSheet(patch, n)) covered.values()[n] = 0;
-    for (Footprint& load : own.loads) load = onSheet(load, covered, touch);
+    for (Footprint& load : own.loads)
+        load = shareOnSheet(load, covered) > kHardly ? cutToSheet(load, covered) : still(touch);
     return own;
 }
 

@@ -30,6 +30,9 @@ void cutOutMembrane(Patch& patch);
 /// \param load        of the fingertip, on the sheet: only its piece counts in heldNodes
 void holdNodes(Patch& patch, const NodeField& shares, double width, double foundation, const NodeField& load);
 
+/// Returns whether two loads press on one piece of the sheet.
+[[nodiscard]] bool areOnOnePiece(const Patch& patch, const NodeField& a, const NodeField& b);
+
 /// Finds how much of the sheet is in pieces that the fingertip's load does not touch. Fills in patch.apart.
 void findApart(Patch& patch, const NodeField& load);
 
@@ -40,12 +43,13 @@ void findSheared(Patch& patch);
 /// Returns the rigidity of the sheet at a node [N m], also where cutOut() has taken it away.
 [[nodiscard]] double sheetRigidity(const Patch& patch, std::size_t node);
 
-/// Returns the footprint's load on the sheet alone, of the same force: none lies beyond the border.
+/// Returns the footprint's load on the sheet alone, of the same force: none lies beyond the border. A fingertip of
+/// which hardly anything is on the sheet presses on the nearest place of the border.
 /// \param covered   share of the sheet at the nodes [1]
-/// \param instead   taken, as one that does not move, where hardly any of the footprint is on the sheet
-[[nodiscard]] Footprint onSheet(const Footprint& footprint, const NodeField& covered, const Footprint& instead);
+[[nodiscard]] Footprint onSheet(const Footprint& footprint, const NodeField& covered);
 
-/// Returns the lattice with the loads that lie on the patch's sheet.
+/// Returns the lattice with the loads that lie on the patch's sheet; of those of which hardly anything does, the middle
+/// one instead.
 [[nodiscard]] FootprintLattice onSheet(const FootprintLattice& lattice, const Patch& patch);
 
 } // namespace palp

@@ -122,8 +122,16 @@ void solveFronts(const ShellFronts& all, Eight* x)
         for (int m = 0; m < f.own; ++m) y[m] = x[f.first + m];
         for (int m = 0; m < f.border; ++m) y[f.own + m] = x[all.borders[f.borderAt + m]];
     };
+    // A load presses on a few fronts: the forward half is that of these and of those that they leave something of.
+    const auto isZero = [&](const RimFront& f) {
+        for (int m = 0; m < f.own; ++m)
+            for (int lane = 0; lane < kLanes; ++lane)
+                if (x[f.first + m][lane] != 0) return false;
+        return true;
+    };
     for (int n = 0; n < all.frontCount; ++n) {
         const RimFront& f = all.fronts[n];
+        if (isZero(f)) continue;
         take(f);
         forwardFront(f, all.columns + f.columnsAt, y);
         for (int m = 0; m < f.own; ++m) x[f.first + m] = all.signs[f.first + m] * y[m];

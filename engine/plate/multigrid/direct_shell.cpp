@@ -148,6 +148,7 @@ struct DirectShell::Impl {
     ShellFronts                 view{};
     bool                        isFactored = false;
     double                      setUp      = 0; ///< [ms]
+    std::optional<double>       rounding; ///< share that refinement changed of the first loads that it was tried on [1]
 
     Impl(const Shell& given, std::span<const Footprint> footprints, std::vector<double> memory, const HostKernels& by);
     void number();
@@ -204,6 +205,8 @@ void DirectShell::Impl::number()
     Which        isW = knownW, isPhi = stressed, either = knownW;
     takeOffHeld(isW, bending);
     takeOffHeld(isPhi, membrane);
+    if (isStressFree(shell))
+        for (const std::size_t pin : pinsOfStress(bending.grid)) isPhi[pin] = 0;
     for (std::size_t n = 0; n < either.size(); ++n) either[n] = isW[n] || isPhi[n];
     phiUnit = std::sqrt(geometricMean(bending.rigidity, knownW) / geometricMean(shell.membraneCompliance, knownW));
 
@@ -406,23 +409,26 @@ bool DirectShell::Impl::solveEight(std::span<const Footprint> footprints, bool r
 std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footprint> footprints, std::size_t whole,
                                                           double tolerance)
 {
-    constexpr double kSpare =
-        0.1; // of the tolerance: beyond it all loads are refined, not those with the whole one only
-    const auto began = Clock::now();
+    // Of the tolerance: beyond the first all loads are refined, not those with the whole one only; below the second
+    // none is after the first ones on a factor, whose rounding it is: a hand that moves has others every 30 ms.
+    constexpr double kSpare = 0.1, kNothing = 1e-4;
+    const auto       began = Clock::now();
     for (const Footprint& footprint : footprints)
         for (const Footprint::Part& part : footprint.parts)
             PALP_EXPECT(part.node < ofW.size(), "a footprint lies on nodes that the shell does not have");
     if (!isFactored || firstThrust == 0) return std::nullopt; // firstThrust: as many unknowns have nodes
     const Shear       shear(shell);
     FootprintSolution solution;
-    double            worst = 0; // share that refinement changes [1]
+    double            worst   = rounding.value_or(0); // share that refinement changes [1]
+    const bool        isExact = rounding && *rounding < kNothing * tolerance;
     solution.responses.resize(footprints.size());
     std::vector<std::size_t> firsts{whole / kLoadsTogether * kLoadsTogether};
     for (std::size_t first = 0; first < footprints.size(); first += kLoadsTogether)
         if (first != firsts.front()) firsts.push_back(first);
     for (const std::size_t first : firsts) {
         const auto some = footprints.subspan(first, std::min<std::size_t>(kLoadsTogether, footprints.size() - first));
-        if (!solveEight(some, first == firsts.front() || worst > kSpare * tolerance, worst)) return std::nullopt;
+        const bool isRefined = (first == firsts.front() && !isExact) || worst > kSpare * tolerance;
+        if (!solveEight(some, isRefined, worst)) return std::nullopt;
         for (std::size_t lane = 0; lane < some.size(); ++lane) {
             const std::size_t n = first + lane;
             NodeField         w = deflection(numbers, lane);
@@ -433,6 +439,7 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
             if (n == whole) solution.whole.deflection = std::move(w);
         }
     }
+    if (!rounding) rounding = worst;
     if (!(worst * worst <= tolerance)) return std::nullopt; // as large a share is left of it after the step
     // What resists by nothing but its share in the stresses moves as far as these want, to no good for whoever takes
     // the deflection for a surface: of a low arch the law of large deflections was 14 % off so.

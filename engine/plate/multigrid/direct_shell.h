@@ -45,7 +45,8 @@ public:
     /// \param whole      index of the load whose deflection is wanted, and of which the report is; beyond a border that
     ///                   goes on as at the border
     /// \param tolerance  of works [1]
-    /// \return nothing if rounding leaves more, as a step of refinement tells it
+    /// \return nothing if rounding leaves more, as a step of refinement tells it; the report has its share of the first
+    ///         loads that were refined on this factor
     [[nodiscard]] std::optional<FootprintSolution> solve(std::span<const Footprint> footprints, std::size_t whole,
                                                          double tolerance);
 

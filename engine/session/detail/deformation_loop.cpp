@@ -1,7 +1,6 @@
 #include "engine/session/detail/deformation_loop.h"
 
 #include <algorithm>
-#include <cmath>
 #include <exception>
 #include <utility>
 
@@ -12,19 +11,6 @@ namespace palp {
 
 using Clock   = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
-
-namespace {
-
-/// Makes a table that lasts as new as the last touch, if it reaches that: one that took longer to solve than a force
-/// lives would end the force, where the one before goes on.
-void renew(ComplianceTable& table, const Touch& last)
-{
-    const auto place = table.chart.project(last.point);
-    if (!place || std::max(std::abs(place->x), std::abs(place->z)) > table.reach()) return;
-    table.time = std::max(table.time, last.time);
-}
-
-} // namespace
 
 void DeformationLoop::run(const std::atomic<bool>& over, const std::atomic<Clock::rep>* stopped)
 {
@@ -46,9 +32,11 @@ void DeformationLoop::run(const std::atomic<bool>& over, const std::atomic<Clock
         if (!answer.update && !newest->touching) continue; // nothing is near
         slow.solve.add(took);
         slow.addPatch(answer.update != nullptr, answer.why);
+        if (answer.ends) {
+            update_.draft() = std::move(answer.ends);
+            update_.publish();
+        }
         if (!answer.update) continue;
-        touch.take();
-        if (answer.lasts) renew(answer.update->table, *touch.held());
         update_.draft() = std::move(answer.update);
         update_.publish();
         patch.draft() = {std::move(answer.patch), took};

@@ -79,8 +79,9 @@ void drawMarks(const PanelDesk& desk, const Patch& patch, ImVec2 corner, float s
     const float       s    = desk.scale;
     const ImVec2      end(corner.x + side, corner.y + side);
     const PlateGrid&  grid = patch.window.grid;
-    const ImVec2      contact(corner.x - side * float(patch.window.corner.x / grid.sizeX()),
-                              end.y + side * float(patch.window.corner.z / grid.sizeZ()));
+    const ChartPoint  pressed = pressedPlace(patch);
+    const ImVec2      contact(corner.x + side * float((pressed.x - patch.window.corner.x) / grid.sizeX()),
+                              end.y - side * float((pressed.z - patch.window.corner.z) / grid.sizeZ()));
     // White on black is visible on every colour.
     for (const auto& [ink, thick] : {std::pair{IM_COL32(0, 0, 0, 200), 3 * s}, {IM_COL32(255, 255, 255, 255), s}}) {
         draw->AddLine(ImVec2(contact.x - 5 * s, contact.y), ImVec2(contact.x + 5 * s, contact.y), ink, thick);
@@ -142,8 +143,8 @@ void drawReadOut(const PanelDesk& desk, const Patch& patch, const std::optional<
 {
     const PlateGrid& grid = patch.window.grid;
     const auto node = [](float share, int cells) { return std::clamp(int(share * float(cells) + 0.5F), 0, cells); };
-    const int  i    = pointed ? node(pointed->x, grid.cellsX) : grid.cellsX / 2;
-    const int  j    = pointed ? node(pointed->y, grid.cellsZ) : grid.cellsZ / 2;
+    const int  i    = pointed ? node(pointed->x, grid.cellsX) : nodeAtContact(patch).i;
+    const int  j    = pointed ? node(pointed->y, grid.cellsZ) : nodeAtContact(patch).j;
     toned(desk, Tone::faint, pointed ? "under the pointer" : "at the contact; point at a map to change it");
     reading(desk, Half::left, "x, right", formatted("%.1f mm", 1e3 * (patch.window.corner.x + i * grid.spacingX)));
     reading(desk, Half::right, "z, up", formatted("%.1f mm", 1e3 * (patch.window.corner.z + j * grid.spacingZ)));

@@ -105,12 +105,12 @@ void drawOverTime(const PanelDesk& desk)
 /// Returns the dent through the contact, along x or along z [mm].
 std::vector<float> profile(const Patch& patch, double force, bool alongX)
 {
-    const PlateGrid&   grid = patch.window.grid;
+    const PlateGrid&   grid    = patch.window.grid;
+    const GridNode     contact = nodeAtContact(patch);
     std::vector<float> w;
     const int          nodes = alongX ? grid.nodesX() : grid.nodesZ();
     for (int n = 0; n < nodes; ++n)
-        w.push_back(
-            float(1e3 * force * (alongX ? patch.response(n, grid.cellsZ / 2) : patch.response(grid.cellsX / 2, n))));
+        w.push_back(float(1e3 * force * (alongX ? patch.response(n, contact.j) : patch.response(contact.i, n))));
     return w;
 }
 
@@ -121,26 +121,26 @@ void drawProfile(const PanelDesk& desk)
         tonedWrapped(desk, Tone::faint, "No patch yet: hold Space and point at the object.");
         return;
     }
-    const PatchWindow& window = patch->window;
+    const PatchWindow& window  = patch->window;
+    const ChartPoint   pressed = pressedPlace(*patch);
+    const ChartPoint   corner{window.corner.x - pressed.x, window.corner.z - pressed.z}; // from the contact [m]
     const auto         x = profile(*patch, desk.content.force, true), z = profile(*patch, desk.content.force, false);
     const double       deepest = double(std::max(*std::ranges::max_element(x), *std::ranges::max_element(z)));
     const double       least   = desk.content.force > 0 ? 0.02 : 0.2; // [mm] smaller ends leave no room for labels
     const double       end     = roundEnd(deepest, least);
-    const ValueRange   across{
-        1e3 * std::min(window.corner.x, window.corner.z),
-        1e3 * std::max(window.corner.x + window.grid.sizeX(), window.corner.z + window.grid.sizeZ())}; // [mm]
+    const ValueRange   across{1e3 * std::min(corner.x, corner.z),
+                            1e3 * std::max(corner.x + window.grid.sizeX(), corner.z + window.grid.sizeZ())}; // [mm]
     // Depths point down, as in the object; beyond zero there is room for the title.
     PanelPlot plot(desk, {"dent w [mm]", across, {-0.4 * end, end}, "mm", 76, Scale::linear, true, true});
     plot.legend("z", Tone::second, PanelPlot::Stroke::dashed);
     plot.legend("x", Tone::accent);
-    plot.curve(z, 1e3 * window.corner.z, 1e3 * window.grid.spacingZ, Tone::second, PanelPlot::Stroke::dashed);
-    plot.curve(x, 1e3 * window.corner.x, 1e3 * window.grid.spacingX, Tone::accent);
+    plot.curve(z, 1e3 * corner.z, 1e3 * window.grid.spacingZ, Tone::second, PanelPlot::Stroke::dashed);
+    plot.curve(x, 1e3 * corner.x, 1e3 * window.grid.spacingX, Tone::accent);
     const auto at = plot.pointed();
     if (!at) return;
     const auto n = std::size_t(
-        std::clamp(std::round((at->x * 1e-3 - window.corner.x) / window.grid.spacingX), 0.0, double(x.size() - 1)));
-    tip(formatted("x = %.1f mm: %.4f mm", 1e3 * (window.corner.x + double(n) * window.grid.spacingX), double(x[n]))
-            .c_str());
+        std::clamp(std::round((at->x * 1e-3 - corner.x) / window.grid.spacingX), 0.0, double(x.size() - 1)));
+    tip(formatted("x = %.1f mm: %.4f mm", 1e3 * (corner.x + double(n) * window.grid.spacingX), double(x[n])).c_str());
 }
 
 } // namespace

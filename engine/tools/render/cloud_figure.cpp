@@ -208,8 +208,8 @@ std::string surfaceSvg(const PointCloud& cloud, std::span<const PressedPatch> pa
             depth[point] += p.force * response;
             positions[point] += response * along;
         });
-        const int middle = p.patch->window.grid.cellsX / 2;
-        figure.marks.push_back(p.patch->contact.point + p.patch->response(middle, middle) * along);
+        const auto [i, j] = nodeAtContact(*p.patch);
+        figure.marks.push_back(p.patch->contact.point + p.patch->response(i, j) * along);
     }
     const Patch& first = *patches.front().patch;
     const bool   given = glm::length(view.direction) > 0;

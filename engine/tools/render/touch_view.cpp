@@ -158,8 +158,8 @@ void TouchView::addHand(const Patch& patch, Pressed by, const TouchLook& look, c
 {
     constexpr double kLongest = 0.22, kNormal = 1.35; // of the window; of the force's arrow [1]
     const glm::dvec3 inward = patch.forceDirection();
-    const PlateGrid& grid   = patch.window.grid;
-    const double     dent   = by.load * patch.response(grid.cellsX / 2, grid.cellsZ / 2);
+    const auto [i, j]       = nodeAtContact(patch);
+    const double     dent   = by.load * patch.response(i, j);
     const glm::dvec3 point  = hand && hand->proxy ? *hand->proxy : patch.contact.point;
     const double     felt   = patch.feltStiffness;
     const glm::dvec3 proxy  = point + look.exaggeration * dent * inward;
@@ -201,7 +201,7 @@ void TouchView::addOutline(double load, double exaggeration)
 /// What a fit and a chart made of the points.
 void TouchView::addFit(const Patch& patch, const Overlays& overlays)
 {
-    if (overlays.sphere) scene_.sphere = linesOf(patch.chart, bent_);
+    if (overlays.sphere) scene_.sphere = linesOf(chartAtContact(patch), bent_);
     if (overlays.projected)
         eachMoving(patch, object_.positions(), [&](std::uint32_t point, const ChartPoint& place, double) {
             if (const auto on = patch.window.holds(place) ? patch.chart.lift(place) : std::nullopt)
@@ -254,7 +254,7 @@ void TouchView::show(const Patch* patch, double force, const TouchLook& look, co
 Camera cameraAt(const Patch& patch, double aspect)
 {
     constexpr double kAround = 0.62; // radius of what must be seen, of the window's edge [1]
-    const Frame      frame   = Frame::about(patch.chart.frame.normal); // the window may stand on its corner
+    const Frame      frame   = Frame::about(chartAtContact(patch).frame.normal); // the window may stand on its corner
     Camera           camera;
     camera.up    = frame.normal;
     camera.toEye = glm::normalize(0.62 * frame.normal + 0.30 * frame.east - 0.72 * frame.north);

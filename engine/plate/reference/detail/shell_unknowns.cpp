@@ -10,15 +10,14 @@
 namespace palp {
 namespace {
 
-/// Numbers the unknowns of one field from `first` on. With `pinned` three corners are held as well: a phi that no side
-/// holds is known but for a linear function, which carries no force.
-std::vector<int> numbered(const Plate& plate, int first, bool pinned)
+/// Numbers the unknowns of one field from `first` on.
+/// \param pins  nodes that are held as well as those of the sides
+std::vector<int> numbered(const Plate& plate, int first, std::span<const std::size_t> pins)
 {
-    const int        cellsX = plate.grid.cellsX, cellsZ = plate.grid.cellsZ;
     std::vector<int> numberOf;
-    for (int i = 0; i <= cellsX; ++i)
-        for (int j = 0; j <= cellsZ; ++j) {
-            const bool isPin = pinned && (i == 0 || i == cellsX) && (j == 0 || j == cellsZ) && !(i > 0 && j > 0);
+    for (int i = 0; i <= plate.grid.cellsX; ++i)
+        for (int j = 0; j <= plate.grid.cellsZ; ++j) {
+            const bool isPin = std::ranges::find(pins, numberOf.size()) != pins.end();
             numberOf.push_back(isHeld(plate, i, j) || isPin ? kHeldUnknown : first++);
         }
     return numberOf;
@@ -95,8 +94,10 @@ ShellUnknowns::ShellUnknowns(const Shell& shell) : grid(shell.bending.grid), thr
         throw Error("the reference solver takes shells of at most " + std::to_string(kMostFactorisedNodes) +
                     " nodes, found " + std::to_string(grid.nodes()) + "; use fewer cells");
     const Plate membrane = membraneOf(shell);
-    ofW                  = numbered(shell.bending, 0, false);
-    ofPhi                = numbered(membrane, 1 + *std::ranges::max_element(ofW), isStressFree(shell));
+    const auto  pins     = pinsOfStress(grid);
+    ofW                  = numbered(shell.bending, 0, {});
+    ofPhi                = numbered(membrane, 1 + *std::ranges::max_element(ofW),
+                                    isStressFree(shell) ? std::span(pins) : std::span<const std::size_t>{});
     firstThrust          = 1 + *std::ranges::max_element(ofPhi);
     count                = firstThrust + int(thrusts.size());
     phiUnit              = std::sqrt(geometricMean(shell.bending.rigidity) / geometricMean(shell.membraneCompliance));
