@@ -308,11 +308,10 @@ void refuseIfEmpty(const Patch& patch, const PatchSettings& settings)
 /// Refuses an object that nothing holds: it would move off as a whole.
 void refuseIfLoose(const Patch& patch, const PatchSettings& settings)
 {
-    constexpr std::size_t kFewest = 3; // nodes hold a sheet in space
-    if (settings.windowOf == WindowOf::contact || settings.foundation > 0 || patch.heldNodes >= kFewest) return;
+    if (!isLoose(patch, settings)) return;
     throw Error(placeText(patch.contact) + ": the piece of surface that is touched reaches " +
-                std::to_string(patch.heldNodes) + " nodes that are held, expected at least " + std::to_string(kFewest) +
-                "; hold more of it with the key held, or give it a foundation");
+                std::to_string(patch.heldNodes) + " nodes that are held, expected at least " +
+                std::to_string(kFewestHeld) + "; hold more of it with the key held, or give it a foundation");
 }
 
 /// Returns the largest value below which no more than a share of all squares lies; reorders.

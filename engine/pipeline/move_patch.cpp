@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "engine/chart/chart_in_chart.h"
+#include "engine/pipeline/detail/chart_doubt.h"
 #include "engine/pipeline/detail/contact_chart.h"
 #include "engine/pipeline/detail/patch_response.h"
 #include "engine/pipeline/detail/shell_patch.h"
@@ -18,6 +19,8 @@
 
 namespace palp {
 namespace {
+
+constexpr double kMostDoubt = 0.04; ///< see chartDoubt() [1]
 
 /// A contact, and the chart about it.
 struct Pressed {
@@ -96,21 +99,26 @@ std::optional<Patch> movePatch(const Patch& from, const SoftObject& object, cons
     const auto lies = placeIn(from, used, contact.point, pressed->chart, radius, shape.radius);
     if (!lies || !isAsGood(*lies, shape, from.window.grid)) return {};
 
-    Patch patch      = from;
-    patch.contact    = pressed->patch.contact;
-    patch.sphere     = pressed->patch.sphere;
-    patch.normalFelt = pressed->patch.normalFelt;
-    patch.sideUnsure = pressed->patch.sideUnsure;
-    patch.spacing    = pressed->patch.spacing;
-    patch.noise      = pressed->patch.noise;
-    patch.times      = {};
-    patch.moved      = {lies->at({}), pressed->chart};
-    if (!areOnOnePiece(patch, unitLoad(from, settings), unitLoad(patch, settings))) return {};
+    Patch patch          = from;
+    patch.contact        = pressed->patch.contact;
+    patch.sphere         = pressed->patch.sphere;
+    patch.normalFelt     = pressed->patch.normalFelt;
+    patch.sideUnsure     = pressed->patch.sideUnsure;
+    patch.spacing        = pressed->patch.spacing;
+    patch.noise          = pressed->patch.noise;
+    patch.times          = {};
+    patch.moved          = {lies->at({}), pressed->chart};
+    const NodeField load = unitLoad(patch, settings);
+    if (!areOnOnePiece(patch, unitLoad(from, settings), load)) return {};
+    patch.heldNodes = heldNodesUnder(patch, load); // the window's own fingertip may have lain across a slit
+    if (isLoose(patch, settings)) return {};
 
+    if (chartDoubt(patch) > 2 * kMostDoubt) return {}; // already by the dent of the contact before
     FootprintLattice own = lattice;
     own.loads = footprintsAt(patch.window.grid, shape, [&](const ChartPoint& place) { return lies->at(place); });
     fillCurvatureAtContact(patch, used.material(), settings.foundation);
     bendPlate(patch, settings, own, solver, table);
+    if (chartDoubt(patch) > kMostDoubt) return {};
     movePoints(patch);
     findStiffness(patch, used, settings, own.loads[own.loads.size() / 2]);
     patch.large.reset();

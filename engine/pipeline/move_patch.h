@@ -15,7 +15,7 @@ namespace palp {
 /// \param from      deformWithTable(), windowAbout() or this has made it; `gathered` and the warnings stay its
 /// \param lattice   of the table there, whose loads do not count
 /// \param settings, solver, carried  as deformWithTable() has them
-/// \param table    is written if the patch moves
+/// \param table     of the patch there; of none it is anything
 /// \return the patch there; nothing where it takes a new one: the window is of the contact alone; the patch's chart has
 ///         lengths there that are off by more than 3 %, or shows another side, layer or piece of the object; the
 ///         contact is farther than a fingertip beside it, or the points around are too few

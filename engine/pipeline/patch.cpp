@@ -132,8 +132,10 @@ std::size_t nodesOfSheet(const Patch& patch)
 
 std::string placeText(const Contact& contact)
 {
-    char text[96];
-    std::snprintf(text, sizeof text, "at (%.4g, %.4g, %.4g) m", contact.point.x, contact.point.y, contact.point.z);
+    char       text[96];
+    const auto tidy = [](double place) { return std::abs(place) < 1e-9 ? 0 : place; }; // rounding is no place [m]
+    std::snprintf(text, sizeof text, "at (%.4g, %.4g, %.4g) m", tidy(contact.point.x), tidy(contact.point.y),
+                  tidy(contact.point.z));
     return text;
 }
 

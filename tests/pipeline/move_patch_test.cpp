@@ -160,13 +160,13 @@ TEST_F(MovePatch, IsNoneWhereTheChartIsNotAsGood)
     const auto settings = settingsOf();
     const auto object   = kDome.object();
     const auto lattice  = footprintLattice(object, settings, 3, solver);
-    const auto first    = deformWithTable(object, kDome.at(-20e-3, 0), settings, lattice, solver).patch;
+    const auto first    = deformWithTable(object, kDome.at(-14e-3, 0), settings, lattice, solver).patch;
     const auto moves    = [&](const Contact& contact) {
         ComplianceTable table;
         return movePatch(first, object, contact, settings, lattice, solver, {}, table).has_value();
     };
     EXPECT_TRUE(moves(kDome.at(0, 0)));
-    EXPECT_FALSE(moves(kDome.at(30e-3, 0))) << "36 degrees away lengths are 5 % off";
+    EXPECT_FALSE(moves(kDome.at(30e-3, 0))) << "32 degrees away lengths are 4 % off";
     Contact under = kDome.at(0, 0);
     under.outward = -under.outward;
     EXPECT_FALSE(moves(under)) << "the other side";
@@ -238,6 +238,51 @@ TEST_F(MovePatch, IsNoneOnAnotherLayerOrAcrossASlit)
     const auto left = windowAbout(slit, halves.at(0, -8e-3), settings);
     EXPECT_TRUE(movePatch(left, slit, halves.at(5e-3, -6e-3), settings, lattice, solver, {}, table));
     EXPECT_FALSE(movePatch(left, slit, halves.at(5e-3, 4e-3), settings, lattice, solver, {}, table));
+}
+
+/// A cap that is held at one side, touched 20 mm from the middle of its window, was felt 31 % softer than in a window
+/// of the contact's own. Truth: CalculiX, bricks C3D20R of 2 and 1.4 mm, as calculix_outlines.py has it; the mesh error
+/// of 2.9 % is taken off.
+TEST_F(MovePatch, IsNoneWhereWhatIsCurvedBothWaysBendsFarFromTheFinger)
+{
+    constexpr double kTruth = 0.5601; // c [m/N]
+    const Relief     cap{[](double x, double y) { return std::sqrt(0.06 * 0.06 - x * x - y * y) - 0.06; }, isRound,
+                     [](double x, double) { return x < -28e-3; }};
+    const auto       object   = cap.object();
+    const auto       settings = settingsOf();
+    const auto       lattice  = footprintLattice(object, settings, 3, solver);
+    const auto       first    = windowAbout(object, cap.at(0, 0), settings);
+    const auto       moves    = [&](double x) {
+        ComplianceTable table;
+        return movePatch(first, object, cap.at(x, 0), settings, lattice, solver, {}, table).has_value();
+    };
+    EXPECT_TRUE(moves(2e-3));
+    EXPECT_FALSE(moves(20e-3));
+    const Patch own = deformWithTable(object, cap.at(20e-3, 0), settings, lattice, solver).patch;
+    EXPECT_NEAR(own.compliance / kTruth, 1, 0.08) << "it sags 19 % of its width, of which touches warn";
+
+    Relief arch            = kArch; // bends as far from the finger, and has a chart with all lengths
+    arch.held              = [](double x, double) { return x < -32e-3; };
+    const auto      tongue = arch.object();
+    const auto      own1   = windowAbout(tongue, arch.at(0, 0), settings);
+    ComplianceTable table;
+    EXPECT_TRUE(movePatch(own1, tongue, arch.at(20e-3, 0), settings, lattice, solver, {}, table));
+}
+
+/// The fingertip of a window's middle may lie across a slit, so that its nodes hang together with both sides.
+TEST_F(MovePatch, IsNoneOnAPieceThatNothingHolds)
+{
+    const Relief halves{
+        [](double, double) { return 0; },
+        [](double x, double y) { return std::abs(x) > 2.5e-3 && std::abs(x) < 40e-3 && std::abs(y) < 20e-3; },
+        [](double x, double) { return x < -35e-3; }};
+    const auto      object   = halves.object();
+    const auto      settings = settingsOf();
+    const auto      lattice  = footprintLattice(object, settings, 3, solver);
+    const auto      first    = windowAbout(object, halves.at(-2.6e-3, 0), settings);
+    ComplianceTable table;
+    EXPECT_TRUE(movePatch(first, object, halves.at(-12e-3, 0), settings, lattice, solver, {}, table));
+    EXPECT_FALSE(movePatch(first, object, halves.at(20e-3, 0), settings, lattice, solver, {}, table));
 }
 
 TEST_F(MovePatch, IsNoneOnAnotherPieceOrOfAWindowOfTheContact)

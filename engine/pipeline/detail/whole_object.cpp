@@ -187,6 +187,19 @@ bool areOnOnePiece(const Patch& patch, const NodeField& a, const NodeField& b)
     return some;
 }
 
+std::size_t heldNodesUnder(const Patch& patch, const NodeField& load)
+{
+    const auto  piece = touchedPiece(patch, load);
+    std::size_t count = 0;
+    for (std::size_t n = 0; n < piece.size(); ++n) count += piece[n] && isHeld(patch, n);
+    return count;
+}
+
+bool isLoose(const Patch& patch, const PatchSettings& settings)
+{
+    return settings.windowOf != WindowOf::contact && !(settings.foundation > 0) && patch.heldNodes < kFewestHeld;
+}
+
 void findApart(Patch& patch, const NodeField& load)
 {
     const auto piece = touchedPiece(patch, load);

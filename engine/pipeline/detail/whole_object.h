@@ -33,6 +33,13 @@ void holdNodes(Patch& patch, const NodeField& shares, double width, double found
 /// Returns whether two loads press on one piece of the sheet.
 [[nodiscard]] bool areOnOnePiece(const Patch& patch, const NodeField& a, const NodeField& b);
 
+/// Returns how many nodes the scene holds of the pieces that a load presses on.
+[[nodiscard]] std::size_t heldNodesUnder(const Patch& patch, const NodeField& load);
+
+constexpr std::size_t kFewestHeld = 3; ///< nodes hold a sheet in space
+/// Returns whether nothing holds what is touched, so that it would move off as a whole.
+[[nodiscard]] bool isLoose(const Patch& patch, const PatchSettings& settings);
+
 /// Finds how much of the sheet is in pieces that the fingertip's load does not touch. Fills in patch.apart.
 void findApart(Patch& patch, const NodeField& load);
 
