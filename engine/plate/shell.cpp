@@ -167,10 +167,11 @@ NodeField sharesOfSheet(const Shell& shell)
     return shares;
 }
 
-bool isStressFree(const Shell& shell) noexcept
+bool isStressFree(const Shell& shell)
 {
-    return shell.stressEdges == PlateEdges{Edge::free, Edge::free, Edge::free, Edge::free} &&
-           std::ranges::all_of(shell.stressBed.values(), [](double k) { return k == 0; });
+    if (shell.stressEdges != PlateEdges{Edge::free, Edge::free, Edge::free, Edge::free}) return false;
+    return std::ranges::all_of(shell.stressBed.values(), [](double k) { return k == 0; }) ||
+           whyUnsolvable(membraneOf(shell)); // a bed in a corner holds no linear function
 }
 
 std::array<std::size_t, 3> pinsOfStress(const PlateGrid& grid) noexcept
