@@ -490,9 +490,9 @@ TEST(Servo, ATableThatLastsIsNotTooOldWhereItReaches)
             const auto record = servo.tick({time, 1e-3}, {hip, {}}, news.get());
             if (record.force != glm::dvec3(0)) last = time;
             if (time >= 2 || n % 16 != 0 || !servo.touch().touching) continue;
-            auto own         = std::make_shared<PatchUpdate>(*deformation.solve(servo.touch(), 1.0 / 60).update);
-            own->table.lasts = lasts;
-            news             = std::move(own);
+            const auto update   = deformation.solve(servo.touch(), 1.0 / 60).update; // its memory is the deformation's
+            update->table.lasts = lasts;
+            news                = update;
         }
         EXPECT_NEAR(last, 2 + until, 0.1) << lasts << " " << away << ": it fades, and is asked in a while";
     }
