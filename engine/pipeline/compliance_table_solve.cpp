@@ -10,6 +10,7 @@
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/dent_length.h"
+#include "engine/pipeline/detail/bending.h"
 #include "engine/pipeline/detail/shell_windows.h"
 #include "engine/plate/load.h"
 
@@ -84,20 +85,15 @@ ComplianceTable::Entry contactOf(const FootprintLattice& lattice, std::size_t n,
     return {std::log(lattice.shape.contactPerRigidity * node) + mean.work, mean.changeX, mean.changeZ};
 }
 
-/// Returns the root mean square radius [m] of the bending energy of a homogeneous plate about its middle:
-/// (w_xx + w_zz)^2 - 2 (1 - nu)(w_xx w_zz - w_xz^2), on which its compliance depends where the rigidity changes.
+/// Returns the root mean square radius [m] of the bending energy of a homogeneous plate about its middle, on which its
+/// compliance depends where the rigidity changes.
 double bendingRadius(const Plate& plate, const NodeField& w)
 {
     const PlateGrid& grid = plate.grid;
-    const double     x2 = grid.spacingX * grid.spacingX, z2 = grid.spacingZ * grid.spacingZ;
     double           sum = 0, energy = 0;
     for (int i = 1; i + 1 < grid.nodesX(); ++i)
         for (int j = 1; j + 1 < grid.nodesZ(); ++j) {
-            const double xx = (w(i + 1, j) - 2 * w(i, j) + w(i - 1, j)) / x2;
-            const double zz = (w(i, j + 1) - 2 * w(i, j) + w(i, j - 1)) / z2;
-            const double xz = (w(i + 1, j + 1) - w(i + 1, j - 1) - w(i - 1, j + 1) + w(i - 1, j - 1)) /
-                              (4 * grid.spacingX * grid.spacingZ);
-            const double here = (xx + zz) * (xx + zz) - 2 * (1 - plate.poissonRatio) * (xx * zz - xz * xz);
+            const double here = Bending::at(grid, w, i, j).energy(plate.poissonRatio);
             const double x = i * grid.spacingX - grid.sizeX() / 2, z = j * grid.spacingZ - grid.sizeZ() / 2;
             sum += here * (x * x + z * z);
             energy += here;

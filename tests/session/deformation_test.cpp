@@ -1,5 +1,6 @@
 #include "engine/session/deformation.h"
 
+#include <atomic>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/pipeline/deform.h"
+#include "engine/session/detail/deformation_loop.h"
 #include "engine/session/scene.h"
 
 namespace palp {
@@ -136,6 +138,26 @@ TEST(CurvedObjectDeformation, PressesOneWindowWhereverTheContactGoes)
     EXPECT_LT(glm::length(origin), 2e-3) << "the middle of the object";
 }
 
+/// A cap that is held at one side wants a window of its own at its tip; what is felt back in the middle is not felt
+/// through that.
+TEST(CurvedObjectDeformation, APlaceFeelsAlikeWhicheverWayTheHandHasCome)
+{
+    const Scene scene  = sceneOfShells();
+    const auto  sphere = [](double x, double y) { return std::sqrt(0.06 * 0.06 - x * x - y * y) - 0.06; };
+    const auto  object = surface(
+         scene, sphere, [](double x, double y) { return std::hypot(x, y) < 36e-3; },
+         [](double x, double) { return x < -24e-3; });
+    Deformation deformation(object, scene);
+    const auto  felt = [&](double x, std::uint64_t sequence) {
+        return deformation.solve(touchOn(x, 0, sphere(x, 0), sequence), 0);
+    };
+    const auto first = felt(0.002, 1), tip = felt(0.02, 2), again = felt(0.002, 3);
+    ASSERT_TRUE(first.patch && tip.patch && again.patch);
+    EXPECT_NE(tip.patch->chart.origin, first.patch->chart.origin);
+    EXPECT_EQ(again.patch->chart.origin, first.patch->chart.origin);
+    EXPECT_NEAR(again.patch->compliance / first.patch->compliance, 1, 1e-8) << "another factor of the same window";
+}
+
 /// The middle of the object is a loose piece, of which there is no window.
 TEST(CurvedObjectDeformation, HasAWindowOfItsOwnWhereTheMiddleHasNone)
 {
@@ -157,6 +179,28 @@ TEST(CurvedObjectDeformation, HasAWindowOfItsOwnWhereTheMiddleHasNone)
     EXPECT_EQ(loose.ends->table.sequence, 2U);
     EXPECT_FALSE(deformation.solve(touchOn(0, 0, 0, 3), 0).ends) << "it is told once";
     EXPECT_NE(loose.why.find("hold more of it"), std::string::npos) << loose.why;
+}
+
+/// The loop hands on what ends a table that lasts, though it is no answer.
+TEST(DeformationLoop, HandsOnThatATableLastsNoLonger)
+{
+    std::atomic<bool> over = false;
+    const auto        slow = [&](const Touch&, double) {
+        over                        = true;
+        DeformationAnswer answer    = {{}, {}, "no answer"};
+        answer.ends                 = std::make_shared<PatchUpdate>();
+        answer.ends->table.sequence = 1;
+        return answer;
+    };
+    DeformationLoop loop(slow, 1000);
+    loop.touch.draft() = {1, 1, true, {}, {0, 0, 1}, {}};
+    loop.touch.publish();
+    loop.run(over);
+    const PatchUpdate* const newest = loop.newest(nullptr);
+    ASSERT_TRUE(newest);
+    EXPECT_FALSE(newest->table.lasts);
+    EXPECT_EQ(loop.slow.failedPatches, 1U);
+    EXPECT_FALSE(loop.patch.take()) << "nothing is drawn";
 }
 
 } // namespace

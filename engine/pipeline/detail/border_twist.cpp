@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/pipeline/detail/bending.h"
 #include "engine/pipeline/detail/whole_object.h"
 
 namespace palp {
@@ -10,11 +11,11 @@ namespace palp {
 double borderTwist(const Patch& patch)
 {
     if (patch.inside.values().empty()) return 0;
-    constexpr double kRim  = 0.315; // thicknesses
-    constexpr double kIn   = 2;     // cells within the border, where all differences are those of the sheet
-    constexpr double kHeld = 1e-3;  // share of a node that is held [1]
-    const PlateGrid& grid  = patch.plate.grid;
-    const NodeField &w = patch.response, &inside = patch.inside;
+    constexpr double kRim   = 0.315; // thicknesses
+    constexpr double kIn    = 2;     // cells within the border, where all differences are those of the sheet
+    constexpr double kHeld  = 1e-3;  // share of a node that is held [1]
+    const PlateGrid& grid   = patch.plate.grid;
+    const NodeField& inside = patch.inside;
     const double     dx = grid.spacingX, dz = grid.spacingZ, cell = std::max(dx, dz);
     double           sum = 0; // of D w_nt^2 along the border [m/N]
     for (int i = 1; i < grid.cellsX; ++i)
@@ -25,10 +26,8 @@ double borderTwist(const Patch& patch)
             const double z       = (inside(i, j + 1) - inside(i, j - 1)) / (2 * dz);
             const double length2 = x * x + z * z; // of what points away from the border [1]
             if (!(length2 > 0)) continue;
-            const double xx = (w(i + 1, j) - 2 * w(i, j) + w(i - 1, j)) / (dx * dx);
-            const double zz = (w(i, j + 1) - 2 * w(i, j) + w(i, j - 1)) / (dz * dz);
-            const double xz = (w(i + 1, j + 1) - w(i + 1, j - 1) - w(i - 1, j + 1) + w(i - 1, j - 1)) / (4 * dx * dz);
-            const double twist = ((zz - xx) * x * z + xz * (x * x - z * z)) / length2;
+            const Bending of    = Bending::at(grid, patch.response, i, j);
+            const double  twist = ((of.zz - of.xx) * x * z + of.xz * (x * x - z * z)) / length2;
             sum += near * dx * dz / cell * sheetRigidity(patch, std::size_t(i * grid.nodesZ() + j)) * twist * twist;
         }
     return kRim * patch.thickness * 2 * (1 - patch.plate.poissonRatio) * sum;
