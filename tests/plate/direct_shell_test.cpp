@@ -68,20 +68,24 @@ TEST(DirectShell, HasTheMatrixOfTheReference)
 /// one, which carries none, and domes were left to multigrid.
 TEST(DirectShell, NeedsNoBorderForItsStresses)
 {
-    Shell shell       = shellOf(square(48), disc(30), constant(1, 1, 0), 8);
-    shell.stressBed   = NodeField(shell.bending.grid);
-    shell.stressEdges = {Edge::free, Edge::free, Edge::free, Edge::free};
-    const auto loads  = lineOn(shell.bending.grid, 3);
-    const auto found  = DirectShell(shell, loads).solve(loads, 1, 1e-4);
-    ASSERT_TRUE(found);
-    const NodeField w = ReferenceShellSolver(shell).solve(loads[1].load(shell.bending.grid)).deflection;
-    EXPECT_NEAR(found->responses[1].work / felt(shell, loads[1], w).work, 1, 1e-6) << "rounding";
+    for (const int cells : {32, 48, 80}) // a pivot of nothing but rounding may have its sign by chance
+        for (const Bend& bend : {constant(1, 1, 0), constant(0, 1, 0.4), constant(1, -1, 0.3), ridges()}) {
+            Shell shell       = shellOf(square(cells), disc(30), bend, 8);
+            shell.stressBed   = NodeField(shell.bending.grid);
+            shell.stressEdges = {Edge::free, Edge::free, Edge::free, Edge::free};
+            const auto loads  = lineOn(shell.bending.grid, 3);
+            const auto found  = DirectShell(shell, loads).solve(loads, 1, 1e-4);
+            ASSERT_TRUE(found) << cells;
+            const NodeField w = ReferenceShellSolver(shell).solve(loads[1].load(shell.bending.grid)).deflection;
+            EXPECT_NEAR(found->responses[1].work / felt(shell, loads[1], w).work, 1, 1e-6) << cells << ": rounding";
 
-    // The void of a round object may reach a corner of its window's part alone, and such a bed holds nothing either.
-    shell.stressBed(48, 48) = shell.membraneCompliance(0, 0) / std::pow(shell.bending.grid.spacingX, 4);
-    const auto corner       = DirectShell(shell, loads).solve(loads, 1, 1e-4);
-    ASSERT_TRUE(corner);
-    EXPECT_NEAR(corner->responses[1].work / found->responses[1].work, 1, 1e-3);
+            // The void of a round object may reach a corner of its window's part alone: such a bed holds nothing either,
+            // but for a fourth corner beside the three. There what is held surrounds the sheet, a thousand times firmer.
+            shell.stressBed(cells, cells) = shell.membraneCompliance(0, 0) / std::pow(shell.bending.grid.spacingX, 4);
+            const auto corner             = DirectShell(shell, loads).solve(loads, 1, 1e-4);
+            ASSERT_TRUE(corner) << cells;
+            EXPECT_NEAR(corner->responses[1].work / found->responses[1].work, 1, 5e-3) << cells;
+        }
 }
 
 /// Its rounding is known after the first loads: those after it are not refined, and are as exact.
@@ -97,7 +101,7 @@ TEST(DirectShell, LaterLoadsAreAsExact)
     EXPECT_GT(*again->whole.report.errorEstimate, 0);
 }
 
-/// What is left out beyond a border, and what a millionth of the rigidity adds there, is felt by less than a thousandth:
+/// What is left out beyond a border, and what a millionth of the rigidity adds there, is felt by less than 1e-3:
 /// an arch that thrusts, whose works are the hundredth part of what is left without.
 TEST(DirectShell, LeavesNothingOutThatIsFelt)
 {
