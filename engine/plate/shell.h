@@ -50,7 +50,7 @@ struct Shell {
 
 /// Returns whether phi is held by no side and no bed: it is then known but for a linear function, which carries no
 /// force.
-[[nodiscard]] bool isStressFree(const Shell& shell);
+[[nodiscard]] bool isStressFree(const Shell& shell) noexcept;
 
 /// Returns the nodes at which such a function may be held: three corners.
 [[nodiscard]] std::array<std::size_t, 3> pinsOfStress(const PlateGrid& grid) noexcept;

@@ -654,6 +654,26 @@ TEST(WholeObject, ForcesTowardsASupportThatTheSheetSurroundsAreSaidToBeLeftOut)
     EXPECT_EQ(touched(domeOnSides(has, held), 0, 0, settings).thrustsLeftOut, 1) << "a bolt holds around its hole";
 }
 
+/// Nothing but what is held holds their stresses, and the factor was singular.
+TEST(WholeObject, ARoundObjectThatIsHeldAllAroundIsSolvedWhateverItsSize)
+{
+    PatchSettings settings{.theory = Theory::shell};
+    settings.windowOf = WindowOf::object;
+    double before     = 90; // [N/m]
+    for (int n = 0; n < 5; ++n) {
+        const double radius = 25e-3 + 2.3e-3 * n;
+        const auto   in     = [&](double x, double y) { return std::hypot(x, y) < radius; };
+        const auto   held   = [&](double x, double y) { return std::hypot(x, y) > radius - 4e-3; };
+        const Patch  dome   = touched(domeOnSides(in, held), -5e-3, 2e-3, settings);
+        EXPECT_TRUE(dome.report.converged) << radius;
+        EXPECT_EQ(dome.report.iterations, 0) << radius << ": by the factor";
+        EXPECT_LT(dome.feltStiffness, 1.03 * before)
+            << radius << ": it is softer the wider it is, but for 3 % of borders";
+        EXPECT_GT(dome.feltStiffness, 0.8 * before) << radius;
+        before = dome.feltStiffness;
+    }
+}
+
 /// Felt with its rim fixed, and in brackets where the rim may slide in its plane: 14.54 (9.89) and 6.63 (4.25) N/m, by
 /// finite differences of Reissner's equations along the radius, in a program that is within 0.02 % of his point load
 /// where the rim is far away.

@@ -104,6 +104,9 @@ Shell GridPart::of(const Shell& shell) const
     if (part.stressBed.values().empty()) return part;
     part.stressEdges = edgesInVoid(part.stressBed, part_);
     makeSidesFirm(part.stressBed, part_);
+    // The void of a round object that is held all around may reach the part in a corner alone. Such a bed leaves linear
+    // stress functions free, and holds none of the rest.
+    if (part.thrusts.empty() && whyUnsolvable(membraneOf(part))) part.stressBed = NodeField(part_);
     return part;
 }
 
