@@ -630,7 +630,8 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
     if (!patch.deformed() || !hasCoarseGrid(patch, settings)) return {};
     const auto compliance = coarseCompliance(patch, settings, solver);
     if (!compliance) return {};
-    return std::abs(*compliance + bodyFelt(patch) + patch.twist - patch.compliance) / 3 / patch.compliance;
+    return std::abs(*compliance * patch.curvedBending + bodyFelt(patch) + patch.twist - patch.compliance) / 3 /
+           patch.compliance;
 }
 
 std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& patch, const PatchSettings& settings,

@@ -200,7 +200,7 @@ void addShape(Shapes& shapes, const Shell& shell, const Solves& solves, NodeFiel
     shapes.w.push_back(std::move(w));
     shapes.right.push_back(std::move(right));
     for (std::size_t i = 0; i <= n; ++i) {
-        loads.push_back(stretchOf(solves.membrane(), shapes.w[i], shapes.w[n]));
+        loads.push_back(stretchOf(shell, solves.membrane(), shapes.w[i], shapes.w[n]));
         for (double& value : loads.back().values()) value /= 2;
     }
     if (!solves.flat()) loads.push_back(couplingLoad(shell, shapes.w[n]));
@@ -309,7 +309,7 @@ NodeField leftOver(const Shapes& shapes, const Shell& shell, const Solves& solve
         for (std::size_t j = 0; j < shapes.w.size(); ++j) add(ofSlopes, parts[i] * parts[j], shapes.slopes(i, j));
     }
     add(phi, 1, ofSlopes);
-    add(left, -1, stretchForces(solves.membrane(), phi, w));
+    add(left, -1, stretchForces(shell, solves.membrane(), phi, w));
     if (!solves.flat()) add(left, -1, couplingForces(shell, ofSlopes));
     return left;
 }

@@ -28,10 +28,10 @@ NodeField couplingLoad(const Shell& shell, const NodeField& w)
     return load;
 }
 
-NodeField stretchForces(const Plate& membrane, const NodeField& phi, const NodeField& w)
+NodeField stretchForces(const Shell& shell, const Plate& membrane, const NodeField& phi, const NodeField& w)
 {
     NodeField forces(membrane.grid);
-    visitStretchTerms(membrane, [&](const StretchTerm& term) {
+    visitStretchTerms(shell, membrane, [&](const StretchTerm& term) {
         const double half = term.stiffness * valueOf(term.force, phi) / 2;
         add(forces, term.slope, half * valueOf(term.across, w));
         add(forces, term.across, half * valueOf(term.slope, w));
@@ -39,10 +39,10 @@ NodeField stretchForces(const Plate& membrane, const NodeField& phi, const NodeF
     return forces;
 }
 
-NodeField stretchOf(const Plate& membrane, const NodeField& v, const NodeField& w)
+NodeField stretchOf(const Shell& shell, const Plate& membrane, const NodeField& v, const NodeField& w)
 {
     NodeField load(membrane.grid);
-    visitStretchTerms(membrane, [&](const StretchTerm& term) {
+    visitStretchTerms(shell, membrane, [&](const StretchTerm& term) {
         const double both =
             valueOf(term.slope, v) * valueOf(term.across, w) + valueOf(term.slope, w) * valueOf(term.across, v);
         add(load, term.force, term.stiffness * both / 2);

@@ -19,8 +19,9 @@ namespace palp {
 //   cell:                           n = phi_xz,  s = sum of both differences along x, t of those along z;  Nxz =
 //   -phi_xz
 //
-// Where an edge of the membrane leaves no second difference, n is empty. Together with the quadratic energies this is
-// the theory of Marguerre and von Karman, valid while slopes stay small, some two thicknesses deep.
+// Each counts as far as there is a sheet (Shell::sheet). Where an edge of the membrane leaves no second difference, n
+// is empty. Together with the quadratic energies this is the theory of Marguerre and von Karman, valid while slopes
+// stay small, some two thicknesses deep.
 // \source  von Karman 1910; Marguerre 1938
 
 struct CouplingTerm {
@@ -57,12 +58,14 @@ struct StretchTerm {
     double     stiffness = 0; ///< k [1/m^2] of phi [N m] and w [m]
 };
 
-/// Calls visit(term) for every term of T, always in the same order.
-/// \param membrane  of membraneOf()
+/// Calls visit(term) for every term of T that counts, always in the same order.
+/// \param membrane  of membraneOf(shell)
 template <class Visit>
-void visitStretchTerms(const Plate& membrane, Visit&& visit)
+void visitStretchTerms(const Shell& shell, const Plate& membrane, Visit&& visit)
 {
-    const PlateGrid& g  = membrane.grid;
+    const NodeField& sheet = shell.sheet;
+    const bool       whole = sheet.values().empty();
+    const PlateGrid& g     = membrane.grid;
     const double     hx = g.spacingX, hz = g.spacingZ;
     const auto       differenceOf = [](int from, int to) {
         Difference d;
@@ -76,19 +79,23 @@ void visitStretchTerms(const Plate& membrane, Visit&& visit)
             const EnergyTerm bending = bendingTerm(membrane, i, j); // p: phi_xx, q: phi_zz, undivided
             const double     rimX    = i == 0 || i == g.cellsX ? 0.5 : 1;
             const double     rimZ    = j == 0 || j == g.cellsZ ? 0.5 : 1;
+            const double     counts  = whole ? 1 : sheet(i, j);
             const auto       edgeOf  = [&](const Difference& force, int from, int to, double stiffness) {
                 const Difference d = differenceOf(from, to);
-                if (force.count > 0) visit(StretchTerm{force, d, d, stiffness});
+                if (force.count > 0 && counts > 0) visit(StretchTerm{force, d, d, stiffness});
             };
             // half of area hx hz / (hz^2 hx^2), and of half that area along a rim
-            const double each = 0.5 / (hx * hz);
+            const double each = 0.5 * counts / (hx * hz);
             if (i < g.cellsX) edgeOf(bending.q, node, ahead, each * rimZ);
             if (i > 0) edgeOf(bending.q, node - g.nodesZ(), node, each * rimZ);
             if (j < g.cellsZ) edgeOf(bending.p, node, node + 1, each * rimX);
             if (j > 0) edgeOf(bending.p, node - 1, node, each * rimX);
             if (i == g.cellsX || j == g.cellsZ) continue;
+            const double ofCell =
+                whole ? 1 : 0.25 * (sheet(i, j) + sheet(i + 1, j) + sheet(i, j + 1) + sheet(i + 1, j + 1));
+            if (!(ofCell > 0)) continue;
             StretchTerm twist{twistingTerm(membrane, i, j).p, differenceOf(node, ahead), differenceOf(node, node + 1),
-                              -2 * 0.25 / (hx * hz)}; // 2 Nxz w_x w_z, each slope the mean of two differences
+                              -2 * 0.25 * ofCell / (hx * hz)}; // 2 Nxz w_x w_z, each slope the mean of two differences
             twist.slope.add(node + 1, -1);
             twist.slope.add(ahead + 1, 1);
             twist.across.add(ahead, -1);
@@ -104,10 +111,11 @@ void visitStretchTerms(const Plate& membrane, Visit&& visit)
 [[nodiscard]] NodeField couplingLoad(const Shell& shell, const NodeField& w);
 
 /// Returns the forces S(phi) w by which membrane forces resist slopes [N]: T = w . S(phi) w / 2.
-[[nodiscard]] NodeField stretchForces(const Plate& membrane, const NodeField& phi, const NodeField& w);
+[[nodiscard]] NodeField stretchForces(const Shell& shell, const Plate& membrane, const NodeField& phi,
+                                      const NodeField& w);
 
 /// Returns the incompatibility s(v, w) by which slopes load the membrane [1]: s(v, w) . phi =
 /// v . S(phi) w.
-[[nodiscard]] NodeField stretchOf(const Plate& membrane, const NodeField& v, const NodeField& w);
+[[nodiscard]] NodeField stretchOf(const Shell& shell, const Plate& membrane, const NodeField& v, const NodeField& w);
 
 } // namespace palp

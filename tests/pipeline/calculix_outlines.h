@@ -13,7 +13,7 @@ struct CalculixOutline {
     double           meshError; ///< of c on the finer mesh, which is taken off [1]
 };
 
-inline constexpr std::array<CalculixOutline, 10> kCalculixOutlines{{
+inline constexpr std::array<CalculixOutline, 15> kCalculixOutlines{{
     {"u dome", 0.68283, 8.4e-03},
     {"u vault", 1.0433, 4.2e-03},
     {"l dome", 3.0811, 2.8e-03},
@@ -24,6 +24,34 @@ inline constexpr std::array<CalculixOutline, 10> kCalculixOutlines{{
     {"steep lump", 13.83, 1.1e-02},
     {"small lump", 10.978, 9.5e-03},
     {"beside a lump", 11.372, 8.6e-03},
+    {"arch", 48.242, 9.6e-03},
+    {"arch at its border", 36.812, 9.2e-03},
+    {"deep arch", 30.145, 1.8e-02},
+    {"gutter", 4.9204, 3.2e-03},
+    {"cap on a segment", 3.0758, 2.0e-02},
+}};
+
+/// How deep it gives way under even parts of a force.
+struct CalculixDeepOutline {
+    std::string_view name;
+    double           force; ///< of the last depth [N]
+
+    std::array<double, 10> depths; ///< on the finer mesh, whose error is that above [m]
+};
+
+inline constexpr std::array<CalculixDeepOutline, 4> kCalculixDeepOutlines{{
+    {"arch",
+     0.07,
+     {0.0001502, 0.000317, 0.0005015, 0.0007075, 0.0009386, 0.001199, 0.00149, 0.001815, 0.00217, 0.002547}},
+    {"arch at its border",
+     0.05,
+     {0.0001425, 0.0003037, 0.0004885, 0.0007043, 0.000961, 0.001273, 0.001657, 0.002131, 0.002699, 0.003345}},
+    {"deep arch",
+     0.055,
+     {0.0001846, 0.0003836, 0.0005962, 0.0008248, 0.001071, 0.001337, 0.001625, 0.001936, 0.002272, 0.002635}},
+    {"cap on a segment",
+     0.006,
+     {0.0001928, 0.0003981, 0.0006098, 0.0008304, 0.00106, 0.0013, 0.001548, 0.001806, 0.002072, 0.002346}},
 }};
 
 } // namespace palp

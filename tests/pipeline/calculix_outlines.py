@@ -23,6 +23,8 @@ import calculix  # noqa: E402
 
 MODULUS, POISSON, FOOTPRINT, THICKNESS = 1e6, 0.45, 4e-3, 1.5e-3  # [Pa], [1], [m], [m]
 SIZES = 1.5e-3, 1e-3  # of the elements of the two meshes [m]
+PRESSES = {"arch": 0.07, "arch at its border": 0.05, "deep arch": 0.055, "cap on a segment": 0.006}  # [N]
+INCREMENTS = 10
 
 
 class Box(NamedTuple):
@@ -73,6 +75,24 @@ def vault(x, z):
     return -5 * x * x
 
 
+def arch(radius, x0):
+    return lambda x, z: math.sqrt(radius**2 - (x + x0) ** 2) - math.sqrt(radius**2 - x0**2)
+
+
+def gutter(x, z):
+    return math.sqrt(0.04**2 - z * z) - 0.04
+
+
+def cap(x, z):  # R = 0.2 m, pressed 20 mm beside its middle
+    return math.sqrt(0.04 - x * x - (z + 0.02) ** 2) - math.sqrt(0.04 - 0.02**2)
+
+
+def between(half, held, width, x0, z0):
+    """A strip that is held at both ends, pressed at x0, z0 of its own places."""
+    ends = [Box(-0.06 - x0, -0.04, -held - x0, 0.04), Box(held - x0, -0.04, 0.06 - x0, 0.04)]
+    return [Box(-half - x0, -width - z0, half - x0, width - z0)], ends
+
+
 def lump(height, width, x0=0.0):
     return lambda x, z: height * math.exp(-((x - x0) ** 2 + z * z) / (2 * width * width))
 
@@ -95,6 +115,11 @@ OUTLINES = [
     Outline("steep lump", lump(2e-3, 5e-3), PANEL, SIDES),
     Outline("small lump", lump(1e-3, 4e-3), PANEL, SIDES),
     Outline("beside a lump", lump(2e-3, 8e-3, 0.012), PANEL, SIDES),
+    Outline("arch", arch(0.05, 0.01), *between(0.036, 0.032, 0.02, 0.01, 0)),
+    Outline("arch at its border", arch(0.05, 0), *between(0.036, 0.032, 0.02, 0, 0.015)),
+    Outline("deep arch", arch(0.04, 0.015), *between(0.036, 0.034, 0.02, 0.015, 0.005)),
+    Outline("gutter", gutter, [Box(-0.05, -0.02, 0.05, 0.02)], [Box(-0.06, -0.03, -0.045, 0.03)]),
+    Outline("cap on a segment", cap, [Disc(0, -0.02, 0.041)], [Box(-0.06, -0.08, -0.03, 0.04)]),
 ]
 
 
@@ -193,7 +218,8 @@ def footprint(outline, faces, at):
     return {node: force / total for node, force in forces.items()}
 
 
-def compliance(outline, size):
+def deck(outline, size):
+    """Its lines up to the step, forces at nodes, 1 N together, and where they point."""
     faces, at = mesh(outline, size)
     corners = {n for face in faces for n in face[: len(face) // 2]}
     numbers, lines = {}, ["*NODE, NSET=ALL"]
@@ -216,7 +242,7 @@ def compliance(outline, size):
     lines.append("*BOUNDARY")
     lines += [f"{number}, 1, 3" for (n, _), number in numbers.items() if any(held.holds(*at[n]) for held in outline.held)]
     forces = {numbers[n, k]: force / 2 for n, force in footprint(outline, faces, at).items() for k in (0, 2)}
-    return calculix.compliance(lines, forces, list(-normal(outline.height, 0, 0)))
+    return lines, forces, list(-normal(outline.height, 0, 0))
 
 
 def main():
@@ -231,9 +257,22 @@ def main():
     print("};\n")
     print(f"inline constexpr std::array<CalculixOutline, {len(OUTLINES)}> kCalculixOutlines{{{{")
     for outline in OUTLINES:
-        coarse, fine = (compliance(outline, size) for size in SIZES)
+        coarse, fine = (calculix.compliance(*deck(outline, size)) for size in SIZES)
         value = fine + (fine - coarse) / (SIZES[0] / SIZES[1] - 1)
         print(f'    {{"{outline.name}", {1 / value:.5g}, {value / fine - 1:.1e}}},', flush=True)
+    print("}};\n")
+    print("/// How deep it gives way under even parts of a force.")
+    print("struct CalculixDeepOutline {")
+    print("    std::string_view name;")
+    print("    double           force; ///< of the last depth [N]")
+    print()
+    print(f"    std::array<double, {INCREMENTS}> depths; ///< on the finer mesh, whose error is that above [m]")
+    print("};\n")
+    print(f"inline constexpr std::array<CalculixDeepOutline, {len(PRESSES)}> kCalculixDeepOutlines{{{{")
+    for name, force in PRESSES.items():
+        outline = next(o for o in OUTLINES if o.name == name)
+        numbers = ", ".join(f"{d:.4g}" for d in calculix.depths(*deck(outline, SIZES[1]), force, INCREMENTS))
+        print(f'    {{"{name}", {force:g}, {{{numbers}}}}},', flush=True)
     print("}};\n\n} // namespace palp")
 
 

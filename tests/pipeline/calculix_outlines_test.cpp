@@ -9,9 +9,13 @@
 #include <string>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/detail/patch_response.h"
+#include "engine/plate/load.h"
+#include "tests/pipeline/force_at.h"
 
 // Curved sheets of any outline, in windows that span them: by CalculiX and by a touch of their points.
 // calculix_outlines.py has the same outlines.
@@ -62,6 +66,27 @@ Outline outlineOf(std::string_view name)
                 : name == "steep lump" ? lump(2e-3, 5e-3)
                 : name == "small lump" ? lump(1e-3, 4e-3)
                                        : lump(2e-3, 8e-3, 12e-3)};
+    if (name.find("arch") != std::string_view::npos) {
+        const bool   deep   = name.starts_with("deep");
+        const double radius = deep ? 40e-3 : 50e-3, held = deep ? 34e-3 : 32e-3;
+        const double x0 = deep ? 15e-3 : name == "arch" ? 10e-3 : 0, z0 = deep ? 5e-3 : name == "arch" ? 0 : 15e-3;
+        return {{box(-36e-3 - x0, -20e-3 - z0, 36e-3 - x0, 20e-3 - z0)},
+                {[=](double x, double) { return std::abs(x + x0) >= held; }},
+                {},
+                [=](double x, double) {
+                    return std::sqrt(radius * radius - (x + x0) * (x + x0)) - std::sqrt(radius * radius - x0 * x0);
+                }};
+    }
+    if (name == "gutter")
+        return {{box(-50e-3, -20e-3, 50e-3, 20e-3)},
+                {[](double x, double) { return x <= -45e-3; }},
+                {},
+                [](double, double z) { return std::sqrt(40e-3 * 40e-3 - z * z) - 40e-3; }};
+    if (name == "cap on a segment")
+        return {{disc(0, -20e-3, 41e-3)}, {[](double x, double) { return x <= -30e-3; }}, {}, [](double x, double z) {
+                    const double away = z + 20e-3;
+                    return std::sqrt(0.04 - x * x - away * away) - std::sqrt(0.04 - 20e-3 * 20e-3);
+                }};
     if (name == "l dome")
         return {{box(-7e-3, -7e-3, 40e-3, 7e-3), box(-7e-3, -7e-3, 7e-3, 40e-3)},
                 {box(32e-3, -10e-3, 50e-3, 10e-3), box(-10e-3, 32e-3, 10e-3, 50e-3)}};
@@ -78,6 +103,16 @@ Outline outlineOf(std::string_view name)
         holes.holes.push_back(disc(18e-3 * std::cos(angle), 18e-3 * std::sin(angle), 3e-3));
     }
     return holes;
+}
+
+/// Returns where and from where an outline is pressed.
+Contact contactOf(const Outline& outline)
+{
+    constexpr double kStep = 1e-6; // [m]
+    const double     here  = outline.height(0, 0);
+    return {{0, 0, here},
+            glm::normalize(
+                glm::dvec3((here - outline.height(kStep, 0)) / kStep, (here - outline.height(0, kStep)) / kStep, 1))};
 }
 
 /// Points half a millimetre apart, each anywhere in its square.
@@ -103,7 +138,9 @@ SoftObject objectOf(const Outline& outline, unsigned seed)
 
 /// With a bed of Airy's function that begins at the border, and with a hold that begins where the first share is held,
 /// they were felt 5 to 18 % too stiff at 256 cells, and less so the finer the cells. With a free side of the window the
-/// U was felt 30 % too stiff. By fits as wide as suit the panel the lumps were felt 40, 29, 11 and 7 % too soft.
+/// U was felt 30 % too stiff. By fits as wide as suit the panel the lumps were felt 40, 29, 11 and 7 % too soft. By the
+/// shallow theory alone arches were felt 3 to 11 % too stiff, and a cap that is held on a segment was felt 10 % too
+/// soft while what lay behind that kept no shape.
 TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
 {
     PlateSolver host("host");
@@ -113,14 +150,46 @@ TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
             settings.windowOf     = WindowOf::object;
             settings.cells        = cells;
             const Outline outline = outlineOf(of.name);
-            const Patch patch = deform(objectOf(outline, 1), {{0, 0, outline.height(0, 0)}, {0, 0, 1}}, settings, host);
+            const Patch   patch   = deform(objectOf(outline, 1), contactOf(outline), settings, host);
             EXPECT_TRUE(patch.report.converged);
             const double felt = 1 / (patch.compliance * of.stiffness) - 1;
             std::printf("  %s, %d cells: %+.1f %%, %s\n", std::string(of.name).c_str(), cells, 100 * felt,
                         patch.report.solver.c_str());
-            EXPECT_LT(of.meshError, 0.012) << of.name;
+            EXPECT_LT(of.meshError, 0.021) << of.name << ": on meshes 1.5 times as fine what is left changed by 0.3 %";
             EXPECT_NEAR(felt, 0, 0.05) << of.name << ", " << cells << " cells";
         }
+}
+
+/// The void's deflection stands for nothing; counted as a sheet that is stretched, it stiffened the arches up to four
+/// times, by how the nodes lay.
+TEST(CalculixOutlines, GiveWayAsFarWhenTheyArePressedDeep)
+{
+    PlateSolver host("host");
+    for (const CalculixDeepOutline& of : kCalculixDeepOutlines) {
+        PatchSettings settings{.theory = Theory::shell, .large = Large::on};
+        settings.windowOf     = WindowOf::object;
+        const Outline outline = outlineOf(of.name);
+        const Patch   patch   = deform(objectOf(outline, 1), contactOf(outline), settings, host);
+        ASSERT_TRUE(patch.large) << of.name << patch.linearBecause;
+        std::printf("  %s:", std::string(of.name).c_str());
+        double worst = 0;
+        for (std::size_t n = 0; n < of.depths.size() && of.depths[n] < 1.55 * 1.5e-3; ++n) {
+            const double force = of.force * double(n + 1) / double(of.depths.size());
+            const double felt  = forceAt(patch, of.depths[n]) / force - 1;
+            std::printf(" %+.1f", 100 * felt);
+            worst = std::max(worst, std::abs(felt));
+        }
+        std::printf(" %%\n");
+        EXPECT_LT(worst, 0.07) << of.name;
+        // The law begins with what is drawn, to the tolerance of its shapes; contact, shear and twist lie in series.
+        const double drawn = dot(unitLoad(patch, settings), patch.response);
+        EXPECT_NEAR(drawn * patch.large->tangent.front(), 1, 2e-3) << of.name;
+        EXPECT_LT(drawn, patch.compliance) << of.name;
+        const auto error = discretisationError(patch, settings, host);
+        ASSERT_TRUE(error);
+        // Cells twice as wide feel the cap 6 % else, the others 2.4.
+        EXPECT_LT(*error, of.name.starts_with("cap") ? 0.022 : 0.012) << of.name;
+    }
 }
 
 /// A hairpin of two arms 8 mm apart, one held at its end, the other touched near its own: what lies between them must

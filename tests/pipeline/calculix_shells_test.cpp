@@ -17,6 +17,7 @@
 
 #include "engine/pipeline/deform.h"
 #include "tests/pipeline/calculix_large.h"
+#include "tests/pipeline/force_at.h"
 
 // What whole objects feel like by CalculiX and by a touch of their points; calculix_shells.py has the objects.
 
@@ -370,18 +371,6 @@ TEST(CalculixShells, ADishBendsAboutItsStemAsAShell)
         EXPECT_NEAR(felt, 0, 0.03) << of.name;
         EXPECT_LT(flat, -0.1) << of.name << ": then nothing is shown";
     }
-}
-
-/// The force of the plate alone at a depth of a touch in the middle [N]; shear across the sheet lies in series.
-double forceAt(const Patch& patch, double depth)
-{
-    const double shear = patch.compliance - 1 / patch.large->tangent.front();
-    double       low = 0, high = 2 * patch.large->force.back();
-    for (int n = 0; n < 60; ++n) {
-        const double force                                                 = (low + high) / 2;
-        (patch.large->depthOf(force) + force * shear < depth ? low : high) = force;
-    }
-    return low;
 }
 
 TEST(CalculixPresses, AreFeltUpToOneAndAHalfThicknesses)

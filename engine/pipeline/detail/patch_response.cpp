@@ -8,6 +8,7 @@
 #include "engine/pipeline/detail/body_give.h"
 #include "engine/pipeline/detail/border_twist.h"
 #include "engine/pipeline/detail/coarser_grid.h"
+#include "engine/pipeline/detail/curved_bending.h"
 #include "engine/pipeline/detail/grid_part.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/stage_clock.h"
@@ -40,8 +41,11 @@ void keep(Patch& patch, const PatchSettings& settings, const GridPart& part, Pla
 {
     patch.response      = part.onWhole(solution.deflection);
     patch.report        = std::move(solution.report);
-    patch.twist         = settings.theory == Theory::shell ? borderTwist(patch) : 0;
-    patch.compliance    = compliance + bodyFelt(patch) + patch.twist;
+    const bool shell    = settings.theory == Theory::shell;
+    patch.twist         = shell ? borderTwist(patch) : 0;
+    patch.curvedBending = shell ? curvedBending(patch, compliance) : 1;
+    for (double& w : patch.response.values()) w *= patch.curvedBending;
+    patch.compliance    = compliance * patch.curvedBending + bodyFelt(patch) + patch.twist;
     patch.times.prepare = patch.report.setUpMilliseconds;
     patch.times.solve -= patch.times.prepare; // which the clock of this stage counts too
 }
@@ -77,7 +81,8 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
     table.chart = chartAtContact(patch);
     fillStiffening(patch.stiffeningAtNodes, lattice, table);
     keep(patch, settings, part, std::move(middle.solution), middle.compliance);
-    for (ComplianceTable::Entry& entry : table.compliance) entry.value += std::log1p(patch.twist / middle.compliance);
+    for (ComplianceTable::Entry& entry : table.compliance)
+        entry.value += std::log(patch.curvedBending + patch.twist / middle.compliance);
 }
 
 // --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels
@@ -130,6 +135,21 @@ LargeLaw coarseLaw(const Patch& patch, const PatchSettings& settings, const Shel
     return law;
 }
 
+/// Finds the law on the patch's own grid. The theory of its shapes is the shallow one; it is as much too stiff far down
+/// as where it begins.
+LargeLaw fineLaw(const Patch& patch, const PatchSettings& settings, const Shell& shell, double reach,
+                 PlateSolver& solver)
+{
+    const GridPart part(patch);
+    NodeField      shallow = part.of(patch.response);
+    for (double& w : shallow.values()) w /= patch.curvedBending;
+    LargeLaw law = largeLaw(part.of(shell), part.of(unitLoad(patch, settings)), shallow, reach, solver,
+                            std::max(settings.tolerance, kShapesTolerance));
+    for (LargeLaw::Values* values : {&law.force, &law.tangent})
+        for (double& value : *values) value /= patch.curvedBending;
+    return law;
+}
+
 } // namespace
 
 void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solver, bool quick)
@@ -139,17 +159,14 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
     const StageClock clock(patch.times.solve);
     const Shell      shell = shellOf(patch);
     const double     reach = kTrusted * patch.thickness;
-    const GridPart   part(patch);
     if (settings.forceLaw != ForceLaw::series)
         patch.linearBecause = std::string("the force law ") + name(settings.forceLaw) + " does not feel the plate";
     else if (const auto why = whyUnsolvable(shell))
         patch.linearBecause = *why;
     else
         try {
-            patch.large = quick && hasCoarseGrid(patch, settings)
-                              ? coarseLaw(patch, settings, shell, reach, solver)
-                              : largeLaw(part.of(shell), part.of(unitLoad(patch, settings)), part.of(patch.response),
-                                         reach, solver, std::max(settings.tolerance, kShapesTolerance));
+            patch.large = quick && hasCoarseGrid(patch, settings) ? coarseLaw(patch, settings, shell, reach, solver)
+                                                                  : fineLaw(patch, settings, shell, reach, solver);
         } catch (const Error& error) {
             patch.linearBecause = error.what();
         }

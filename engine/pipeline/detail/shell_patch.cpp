@@ -200,7 +200,8 @@ Shell shellOf(const Patch& patch)
             curvature(&CurvatureField::xz),
             patch.stressBed,
             patch.thrusts,
-            patch.sheared};
+            patch.sheared,
+            patch.covered};
 }
 
 std::string whyFlat(const Patch& patch, const SoftObject& object, const PatchSettings& settings)

@@ -27,8 +27,8 @@ Eigen::VectorXd vectorOf(const std::vector<double>& values)
 }
 
 /// Adds the second derivative of T at a state.
-void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Plate& membrane, const NodeField& w,
-                const NodeField& phi)
+void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Shell& shell, const Plate& membrane,
+                const NodeField& w, const NodeField& phi)
 {
     const auto couple = [&](const Difference& a, const std::vector<int>& ofA, const Difference& b,
                             const std::vector<int>& ofB, double k) {
@@ -40,14 +40,14 @@ void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Plate& mem
                 entries.push_back({{column, row}, k * a.factor[m] * b.factor[n]});
             }
     };
-    visitStretchTerms(membrane, [&](const StretchTerm& term) {
+    visitStretchTerms(shell, membrane, [&](const StretchTerm& term) {
         const double half = term.stiffness / 2;
         couple(term.slope, of.ofW, term.across, of.ofW, half * valueOf(term.force, phi));
         couple(term.slope, of.ofW, term.force, of.ofPhi, half * of.phiUnit * valueOf(term.across, w));
         couple(term.across, of.ofW, term.force, of.ofPhi, half * of.phiUnit * valueOf(term.slope, w));
     });
     for (std::size_t t = 0; t < of.thrusts.size(); ++t) {
-        const NodeField forces = stretchForces(membrane, of.thrusts[t], w);
+        const NodeField forces = stretchForces(shell, membrane, of.thrusts[t], w);
         const int       column = of.firstThrust + int(t);
         for (std::size_t n = 0; n < of.ofW.size(); ++n) {
             if (of.ofW[n] == kHeldUnknown) continue;
@@ -58,11 +58,11 @@ void addStretch(ShellEntries& entries, const ShellUnknowns& of, const Plate& mem
 }
 
 /// Returns the gradient of T at a state, in the unknowns.
-Eigen::VectorXd gradientOfStretch(const ShellUnknowns& of, const Plate& membrane, const NodeField& w,
-                                  const NodeField& phi)
+Eigen::VectorXd gradientOfStretch(const ShellUnknowns& of, const Shell& shell, const Plate& membrane,
+                                  const NodeField& w, const NodeField& phi)
 {
-    Eigen::VectorXd gradient = vectorOf(of.rightSide(stretchForces(membrane, phi, w)));
-    const NodeField load     = stretchOf(membrane, w, w);
+    Eigen::VectorXd gradient = vectorOf(of.rightSide(stretchForces(shell, membrane, phi, w)));
+    const NodeField load     = stretchOf(shell, membrane, w, w);
     for (std::size_t n = 0; n < of.ofPhi.size(); ++n)
         if (of.ofPhi[n] != kHeldUnknown) gradient[of.ofPhi[n]] = of.phiUnit * load.values()[n] / 2;
     for (std::size_t t = 0; t < of.thrusts.size(); ++t)
@@ -74,8 +74,9 @@ Eigen::VectorXd gradientOfStretch(const ShellUnknowns& of, const Plate& membrane
 class Press {
 public:
     Press(const Shell& shell, const NodeField& unitLoad)
-        : unknowns_(shell), membrane_(membraneOf(shell)), linear_(matrixOf(unknowns_.entries, unknowns_.count)),
-          load_(vectorOf(unknowns_.rightSide(unitLoad))), x_(Eigen::VectorXd::Zero(unknowns_.count))
+        : shell_(shell), unknowns_(shell), membrane_(membraneOf(shell)),
+          linear_(matrixOf(unknowns_.entries, unknowns_.count)), load_(vectorOf(unknowns_.rightSide(unitLoad))),
+          x_(Eigen::VectorXd::Zero(unknowns_.count))
     {
     }
 
@@ -99,10 +100,10 @@ private:
     {
         const NodeField w = unknowns_.deflection(state()), phi = unknowns_.stressFunction(state());
         ShellEntries    entries = unknowns_.entries;
-        addStretch(entries, unknowns_, membrane_, w, phi);
+        addStretch(entries, unknowns_, shell_, membrane_, w, phi);
         factors_.compute(matrixOf(entries, unknowns_.count));
         if (factors_.info() != Eigen::Success) return NAN;
-        const Eigen::VectorXd rest    = -(linear_ * x_ + gradientOfStretch(unknowns_, membrane_, w, phi));
+        const Eigen::VectorXd rest    = -(linear_ * x_ + gradientOfStretch(unknowns_, shell_, membrane_, w, phi));
         const Eigen::VectorXd unit    = factors_.solve(load_);
         const Eigen::VectorXd balance = factors_.solve(rest);
         force_                        = (depth - load_.dot(x_ + balance)) / load_.dot(unit);
@@ -113,6 +114,7 @@ private:
 
     [[nodiscard]] std::span<const double> state() const { return {x_.data(), std::size_t(x_.size())}; }
 
+    const Shell&    shell_;
     ShellUnknowns   unknowns_;
     Plate           membrane_;
     Matrix          linear_;
