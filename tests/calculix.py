@@ -23,7 +23,7 @@ def work(words, forces, along):
 
 
 def displacements(lines, forces, along, step):
-    """Of a deck up to its step, under forces: their work over 1 N, after each increment of the step that is printed [m]."""
+    """Of a deck up to its step, under forces: their work over 1 N after each increment of the step [m]."""
     lines = lines + ["*NSET, NSET=LOADED"] + [f"{node}," for node in forces] + step + ["*CLOAD"]
     for node, force in forces.items():
         lines += [f"{node}, {axis + 1}, {force * a:.12g}" for axis, a in enumerate(along) if a]

@@ -443,6 +443,16 @@ CurvatureField interpolated(const PatchWindow& window, const std::vector<ChartTe
     return field;
 }
 
+/// Returns a frame carried to the fitted normal next to its own place. A sphere that is fitted beside the border of a
+/// tube leans by up to ten degrees, and axes that were carried from there to the tube's far ends came out turned by
+/// five.
+Frame uprightAt(const Frame& frame, const std::vector<CurvatureSite>& sites)
+{
+    const auto nearest = std::ranges::min_element(
+        sites, {}, [](const CurvatureSite& site) { return std::hypot(site.place.x, site.place.z); });
+    return nearest == sites.end() ? frame : frame.carriedTo(nearest->here.normal);
+}
+
 } // namespace
 
 double rungRadius(int rung) noexcept
@@ -482,13 +492,14 @@ std::optional<LocalCurvature> fitCurvature(const SurfaceSheet& sheet, const glm:
     return result;
 }
 
-std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Frame& frame, const CurvatureSites& sites,
+std::optional<CurvatureField> curvatureField(const PatchWindow& window, const Frame& of, const CurvatureSites& sites,
                                              const CurvatureSettings& settings)
 {
     PALP_EXPECT(settings.spacing > 0, std::to_string(settings.spacing) + " m between the points");
-    auto wanted = radiusFor(window, frame, sites, settings);
+    auto wanted = radiusFor(window, of, sites, settings);
     if (!wanted) return {};
-    if (settings.isWide) wanted = std::min(*wanted, radiusForSharp(frame, sites, settings));
+    if (settings.isWide) wanted = std::min(*wanted, radiusForSharp(of, sites, settings));
+    const Frame frame = settings.isWide ? uprightAt(of, sites(int(std::floor(rungOf(*wanted))), FitsFor::field)) : of;
     // Of what is hardly curved fits would be as wide as may be, and wider than a narrow object, which then decides
     // nothing.
     for (double radius = *wanted;; radius /= 2) {

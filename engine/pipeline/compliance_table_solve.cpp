@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/bending.h"
 #include "engine/pipeline/detail/shell_windows.h"
+#include "engine/plate/curved_bending.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -116,6 +118,25 @@ struct OverNode {
     }
 };
 
+/// Adds what a curved object gives way over the shallow theory to ln c of each entry, and how that changes from one to
+/// the next to their slopes.
+void addCurved(std::span<const FootprintResponse> responses, ComplianceTable& table)
+{
+    if (std::ranges::all_of(responses, [](const FootprintResponse& of) { return of.curved == 0; })) return;
+    const int  side = table.side, last = side - 1;
+    const auto at     = [&](int i, int j) { return std::log(givesWay(responses[std::size_t(i * side + j)])); };
+    const auto change = [&](int from, int to, double of) { return to > from ? of / ((to - from) * table.spacing) : 0; };
+    for (int i = 0; i < side; ++i)
+        for (int j = 0; j < side; ++j) {
+            ComplianceTable::Entry& entry = table.compliance[std::size_t(i * side + j)];
+            const int               i0 = std::max(0, i - 1), i1 = std::min(last, i + 1);
+            const int               j0 = std::max(0, j - 1), j1 = std::min(last, j + 1);
+            entry.value += at(i, j);
+            entry.slopeX += change(i0, i1, at(i1, j) - at(i0, j));
+            entry.slopeZ += change(j0, j1, at(i, j1) - at(i, j0));
+        }
+}
+
 /// Writes what footprints feel, less what they feel of the window alone.
 /// \param own  of the window: ln c(e)/c(0) with its slopes
 MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& lattice, const OverNode& rigidity,
@@ -128,7 +149,9 @@ MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& latti
         table.compliance[n] = {felt.value - own[n].value, felt.slopeX - own[n].slopeX, felt.slopeZ - own[n].slopeZ};
         table.contactStiffness[n] = contactOf(lattice, n, rigidity.over, rigidity.node);
     }
-    return {std::move(solved.whole), solved.responses[lattice.loads.size() / 2].work};
+    addCurved(solved.responses, table);
+    const FootprintResponse& middle = solved.responses[lattice.loads.size() / 2];
+    return {std::move(solved.whole), middle.work, givesWay(middle)};
 }
 
 /// Returns ln c(e)/c(0) with its slopes in the window of a homogeneous shell of the mean rigidity and curvature.

@@ -95,7 +95,8 @@ struct TableSolution {
 /// The solution in the middle of a table.
 struct MiddleSolution {
     PlateSolution solution;   ///< under 1 N
-    double        compliance; ///< c there [m/N]
+    double        compliance; ///< c there, of the shallow theory [m/N]
+    double        curved = 1; ///< what c is of that, see givesWay() [1]
 };
 
 /// Does the same into a table that is there, so that who reads it needs no copy. Its sequence number, time and chart

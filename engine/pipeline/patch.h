@@ -159,7 +159,7 @@ struct Patch {
     NodeField               response;             ///< deflection per force at the nodes [m/N]
     double                  bodyCompliance   = 0; ///< of a body that the window is cut from, in series [m/N]
     double                  twist            = 0; ///< by which free borders resist less, part of c [m/N]
-    double                  curvedBending    = 1; ///< what the response is of the shallow theory's, see curvedBending()
+    double                  curvedBending    = 1; ///< what the response is of the shallow theory's, see givesWay()
     double                  compliance       = 0; ///< c: response averaged over the footprint, and the body's [m/N]
     double                  contactStiffness = 0; ///< k_c [N/m]
     double                  feltStiffness    = 0; ///< [N/m]

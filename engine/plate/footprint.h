@@ -33,6 +33,7 @@ struct FootprintResponse {
     double work    = 0; ///< of the load along w [N m]; for a load of 1 N the compliance [m/N]
     double changeX = 0; ///< work of the changes along w: half of what `work` changes as the footprint moves [N]
     double changeZ = 0; ///< along z [N]
+    double curved  = 0; ///< of the moments along what else bends a curved object, see CurvedBending [N m]
 };
 
 /// Returns the response from a deflection [m].

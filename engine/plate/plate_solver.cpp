@@ -1,4 +1,5 @@
 #include "engine/plate/plate_solver.h"
+#include "engine/plate/curved_bending.h"
 
 #include <algorithm>
 #include <chrono>
@@ -133,15 +134,17 @@ FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell&
     // What thrust takes off a work leaves its error, and loads together may stop with three times the error of one.
     const double left = thrusts.shareLeft(first, loads[whole]), closer = left < 1 ? loose * std::sqrt(left) / 3 : loose;
     if (closer < std::min(drawn, loose)) first = std::move(solver.solve(loads.subspan(whole, 1), closer).front());
-    auto              rest = solver.solve(others, closer);
-    const Shear       shear(shell);
-    FootprintSolution solution;
+    auto                rest = solver.solve(others, closer);
+    const Shear         shear(shell);
+    const CurvedBending curved(shell);
+    FootprintSolution   solution;
     for (std::size_t n = 0; n < loads.size(); ++n) {
         ShellAnswer& of = n == whole ? first : rest[n < whole ? n : n - 1];
         thrusts.takeOff(of, loads[n]);
         solution.responses.push_back(responseOf(loads[n], of.deflection));
         solution.responses.back().work =
             of.work + shear.workOf(of.deflection) - squeezeWork(shell, of.deflection, loads[n]);
+        solution.responses.back().curved = curved.workOf(of.deflection);
         if (!of.report.converged) solution.whole.report = of.report;
     }
     if (solution.whole.report.converged) solution.whole.report = first.report;
@@ -801,13 +804,15 @@ FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const F
     const ReferenceShellSolver solver(shell);
     const auto                 made = std::chrono::steady_clock::now();
     const Shear                shear(shell);
+    const CurvedBending        curved(shell);
     FootprintSolution          solution;
     for (std::size_t n = 0; n < loads.size(); ++n) {
         ShellSolution of = solver.solve(loads[n].load(shell.bending.grid));
         solution.responses.push_back(responseOf(loads[n], of.deflection));
         solution.responses.back().work += shear.workOf(of.deflection) - squeezeWork(shell, of.deflection, loads[n]);
-        SolveReport& report    = solution.whole.report;
-        const bool   converged = of.errorEstimate * of.errorEstimate <= tolerance; // as for plates
+        solution.responses.back().curved = curved.workOf(of.deflection);
+        SolveReport& report              = solution.whole.report;
+        const bool   converged           = of.errorEstimate * of.errorEstimate <= tolerance; // as for plates
         if (n == whole) solution.whole.deflection = std::move(of.deflection);
         if (!report.converged || (converged && n != whole)) continue; // the first that did not, else the whole one's
         report.solver        = kReference;

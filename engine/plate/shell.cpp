@@ -194,6 +194,9 @@ std::optional<std::string> whyUnsolvable(const Shell& shell)
         return "the bed of the stresses is on another grid than the rigidity";
     if (!std::ranges::all_of(shell.stressBed.values(), [](double k) { return k >= 0 && std::isfinite(k); }))
         return "the bed of the stresses has to be finite and at least 0 everywhere";
+    for (const NodeField* share : {&shell.sheared, &shell.stretched})
+        if (!share->values().empty() && !share->on(grid))
+            return "what is sheared or stretched is on another grid than the rigidity";
     if (!shell.thrusts.empty() && !(membraneOf(shell).foundation > 0))
         return "there are thrusts, but no bed that they leave";
     for (const NodeField& thrust : shell.thrusts)

@@ -35,8 +35,9 @@ struct Shell {
     std::vector<NodeField> thrusts{};
     NodeField sheared{}; ///< share of shearWork() that counts at the nodes [1]: none where they stand for no free sheet
                          ///< or its sides; empty: all
-    NodeField sheet{}; ///< share of what a node stands for that is sheet [1], where an object ends in the window: what
-                       ///< lies beyond is neither stretched by its slopes nor carries a force; empty: all
+    NodeField
+        stretched{}; ///< whether slopes stretch a sheet at the nodes: 0 at the ground of what is held, else 1, where
+                     ///< an object ends in the window; empty: everywhere
 };
 
 /// Returns in one sentence why a shell cannot be solved; empty if it can.

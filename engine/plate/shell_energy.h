@@ -19,9 +19,14 @@ namespace palp {
 //   cell:                           n = phi_xz,  s = sum of both differences along x, t of those along z;  Nxz =
 //   -phi_xz
 //
-// Each counts as far as there is a sheet (Shell::sheet). Where an edge of the membrane leaves no second difference, n
-// is empty. Together with the quadratic energies this is the theory of Marguerre and von Karman, valid while slopes
-// stay small, some two thicknesses deep.
+// Where an edge of the membrane leaves no second difference, n is empty. Together with the quadratic energies this is
+// the theory of Marguerre and von Karman, valid while slopes stay small, some two thicknesses deep.
+//
+// Beyond a border the terms count on: the load of all slopes around a node is the determinant of second differences of
+// w, none of a sheet that bends without being stretched, and w goes on smoothly. Terms that ended at the border instead
+// left loads along it by which such sheets hardened (a T by a third, two thicknesses deep). They end at the ground of
+// what is held: it has no bed and hardly gives way, while w beside it may be anything; arches hardened fourfold by
+// that.
 // \source  von Karman 1910; Marguerre 1938
 
 struct CouplingTerm {
@@ -58,14 +63,18 @@ struct StretchTerm {
     double     stiffness = 0; ///< k [1/m^2] of phi [N m] and w [m]
 };
 
-/// Calls visit(term) for every term of T that counts, always in the same order.
+/// Returns whether slopes stretch the sheet at a node.
+[[nodiscard]] inline bool isStretched(const Shell& shell, int i, int j)
+{
+    return shell.stretched.values().empty() || shell.stretched(i, j) > 0;
+}
+
+/// Calls visit(term) for every term of T, always in the same order.
 /// \param membrane  of membraneOf(shell)
 template <class Visit>
 void visitStretchTerms(const Shell& shell, const Plate& membrane, Visit&& visit)
 {
-    const NodeField& sheet = shell.sheet;
-    const bool       whole = sheet.values().empty();
-    const PlateGrid& g     = membrane.grid;
+    const PlateGrid& g  = membrane.grid;
     const double     hx = g.spacingX, hz = g.spacingZ;
     const auto       differenceOf = [](int from, int to) {
         Difference d;
@@ -75,27 +84,26 @@ void visitStretchTerms(const Shell& shell, const Plate& membrane, Visit&& visit)
     };
     for (int i = 0; i < g.nodesX(); ++i)
         for (int j = 0; j < g.nodesZ(); ++j) {
+            if (!isStretched(shell, i, j)) continue;
             const int        node = i * g.nodesZ() + j, ahead = node + g.nodesZ();
             const EnergyTerm bending = bendingTerm(membrane, i, j); // p: phi_xx, q: phi_zz, undivided
             const double     rimX    = i == 0 || i == g.cellsX ? 0.5 : 1;
             const double     rimZ    = j == 0 || j == g.cellsZ ? 0.5 : 1;
-            const double     counts  = whole ? 1 : sheet(i, j);
             const auto       edgeOf  = [&](const Difference& force, int from, int to, double stiffness) {
                 const Difference d = differenceOf(from, to);
-                if (force.count > 0 && counts > 0) visit(StretchTerm{force, d, d, stiffness});
+                if (force.count > 0) visit(StretchTerm{force, d, d, stiffness});
             };
             // half of area hx hz / (hz^2 hx^2), and of half that area along a rim
-            const double each = 0.5 * counts / (hx * hz);
+            const double each = 0.5 / (hx * hz);
             if (i < g.cellsX) edgeOf(bending.q, node, ahead, each * rimZ);
             if (i > 0) edgeOf(bending.q, node - g.nodesZ(), node, each * rimZ);
             if (j < g.cellsZ) edgeOf(bending.p, node, node + 1, each * rimX);
             if (j > 0) edgeOf(bending.p, node - 1, node, each * rimX);
-            if (i == g.cellsX || j == g.cellsZ) continue;
-            const double ofCell =
-                whole ? 1 : 0.25 * (sheet(i, j) + sheet(i + 1, j) + sheet(i, j + 1) + sheet(i + 1, j + 1));
-            if (!(ofCell > 0)) continue;
+            if (i == g.cellsX || j == g.cellsZ || !isStretched(shell, i + 1, j) || !isStretched(shell, i, j + 1) ||
+                !isStretched(shell, i + 1, j + 1))
+                continue;
             StretchTerm twist{twistingTerm(membrane, i, j).p, differenceOf(node, ahead), differenceOf(node, node + 1),
-                              -2 * 0.25 * ofCell / (hx * hz)}; // 2 Nxz w_x w_z, each slope the mean of two differences
+                              -2 * 0.25 / (hx * hz)}; // 2 Nxz w_x w_z, each slope the mean of two differences
             twist.slope.add(node + 1, -1);
             twist.slope.add(ahead + 1, 1);
             twist.across.add(ahead, -1);

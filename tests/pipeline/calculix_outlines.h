@@ -13,7 +13,7 @@ struct CalculixOutline {
     double           meshError; ///< of c on the finer mesh, which is taken off [1]
 };
 
-inline constexpr std::array<CalculixOutline, 15> kCalculixOutlines{{
+inline constexpr std::array<CalculixOutline, 18> kCalculixOutlines{{
     {"u dome", 0.68283, 8.4e-03},
     {"u vault", 1.0433, 4.2e-03},
     {"l dome", 3.0811, 2.8e-03},
@@ -27,7 +27,10 @@ inline constexpr std::array<CalculixOutline, 15> kCalculixOutlines{{
     {"arch", 48.242, 9.6e-03},
     {"arch at its border", 36.812, 9.2e-03},
     {"deep arch", 30.145, 1.8e-02},
+    {"curled strip", 0.30108, 9.1e-03},
     {"gutter", 4.9204, 3.2e-03},
+    {"gutter at its tip", 0.69099, 1.5e-03},
+    {"corrugated strip", 0.67901, 1.3e-02},
     {"cap on a segment", 3.0758, 2.0e-02},
 }};
 

@@ -83,6 +83,10 @@ def gutter(x, z):
     return math.sqrt(0.04**2 - z * z) - 0.04
 
 
+def corrugated(x, z):
+    return 0.002 * (math.cos(2 * math.pi * x / 0.024) - 1)
+
+
 def cap(x, z):  # R = 0.2 m, pressed 20 mm beside its middle
     return math.sqrt(0.04 - x * x - (z + 0.02) ** 2) - math.sqrt(0.04 - 0.02**2)
 
@@ -118,7 +122,10 @@ OUTLINES = [
     Outline("arch", arch(0.05, 0.01), *between(0.036, 0.032, 0.02, 0.01, 0)),
     Outline("arch at its border", arch(0.05, 0), *between(0.036, 0.032, 0.02, 0, 0.015)),
     Outline("deep arch", arch(0.04, 0.015), *between(0.036, 0.034, 0.02, 0.015, 0.005)),
+    Outline("curled strip", arch(0.05, 0.02), [Box(-0.056, -0.02, 0.016, 0.02)], [Box(-0.09, -0.04, -0.052, 0.04)]),
     Outline("gutter", gutter, [Box(-0.05, -0.02, 0.05, 0.02)], [Box(-0.06, -0.03, -0.045, 0.03)]),
+    Outline("gutter at its tip", gutter, [Box(-0.095, -0.02, 0.005, 0.02)], [Box(-0.11, -0.03, -0.09, 0.03)]),
+    Outline("corrugated strip", corrugated, [Box(-0.036, -0.012, 0.036, 0.012)], [Box(-0.07, -0.04, -0.032, 0.04)]),
     Outline("cap on a segment", cap, [Disc(0, -0.02, 0.041)], [Box(-0.06, -0.08, -0.03, 0.04)]),
 ]
 

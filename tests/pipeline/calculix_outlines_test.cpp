@@ -77,11 +77,26 @@ Outline outlineOf(std::string_view name)
                     return std::sqrt(radius * radius - (x + x0) * (x + x0)) - std::sqrt(radius * radius - x0 * x0);
                 }};
     }
-    if (name == "gutter")
-        return {{box(-50e-3, -20e-3, 50e-3, 20e-3)},
-                {[](double x, double) { return x <= -45e-3; }},
+    if (name == "curled strip")
+        return {{box(-56e-3, -20e-3, 16e-3, 20e-3)},
+                {[](double x, double) { return x <= -52e-3; }},
+                {},
+                [](double x, double) {
+                    return std::sqrt(50e-3 * 50e-3 - (x + 20e-3) * (x + 20e-3)) -
+                           std::sqrt(50e-3 * 50e-3 - 20e-3 * 20e-3);
+                }};
+    if (name.starts_with("gutter")) {
+        const double x0 = name == "gutter" ? 0 : 45e-3;
+        return {{box(-50e-3 - x0, -20e-3, 50e-3 - x0, 20e-3)},
+                {[=](double x, double) { return x + x0 <= -45e-3; }},
                 {},
                 [](double, double z) { return std::sqrt(40e-3 * 40e-3 - z * z) - 40e-3; }};
+    }
+    if (name == "corrugated strip")
+        return {{box(-36e-3, -12e-3, 36e-3, 12e-3)},
+                {[](double x, double) { return x <= -32e-3; }},
+                {},
+                [](double x, double) { return 2e-3 * (std::cos(2 * std::numbers::pi * x / 24e-3) - 1); }};
     if (name == "cap on a segment")
         return {{disc(0, -20e-3, 41e-3)}, {[](double x, double) { return x <= -30e-3; }}, {}, [](double x, double z) {
                     const double away = z + 20e-3;
@@ -118,7 +133,7 @@ Contact contactOf(const Outline& outline)
 /// Points half a millimetre apart, each anywhere in its square.
 SoftObject objectOf(const Outline& outline, unsigned seed)
 {
-    constexpr double                       kSpacing = 0.5e-3, kReach = 62e-3; // [m]
+    constexpr double                       kSpacing = 0.5e-3, kReach = 100e-3; // [m]
     std::mt19937_64                        bits(seed);
     std::uniform_real_distribution<double> within(0, kSpacing);
     std::vector<glm::dvec3>                points;
@@ -139,8 +154,8 @@ SoftObject objectOf(const Outline& outline, unsigned seed)
 /// With a bed of Airy's function that begins at the border, and with a hold that begins where the first share is held,
 /// they were felt 5 to 18 % too stiff at 256 cells, and less so the finer the cells. With a free side of the window the
 /// U was felt 30 % too stiff. By fits as wide as suit the panel the lumps were felt 40, 29, 11 and 7 % too soft. By the
-/// shallow theory alone arches were felt 3 to 11 % too stiff, and a cap that is held on a segment was felt 10 % too
-/// soft while what lay behind that kept no shape.
+/// shallow theory alone arches were felt 3 to 11 % too stiff and a curled strip a quarter too soft, and a cap that is
+/// held on a segment was felt 10 % too soft while what lay behind that kept no shape.
 TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
 {
     PlateSolver host("host");
@@ -155,8 +170,15 @@ TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
             const double felt = 1 / (patch.compliance * of.stiffness) - 1;
             std::printf("  %s, %d cells: %+.1f %%, %s\n", std::string(of.name).c_str(), cells, 100 * felt,
                         patch.report.solver.c_str());
-            EXPECT_LT(of.meshError, 0.021) << of.name << ": on meshes 1.5 times as fine what is left changed by 0.3 %";
-            EXPECT_NEAR(felt, 0, 0.05) << of.name << ", " << cells << " cells";
+            if (of.name == "curled strip" && cells == 256) { // the reference has what curvature bends too
+                const Patch other = deform(objectOf(outline, 1), contactOf(outline), settings);
+                EXPECT_NEAR(other.curvedBending / patch.curvedBending, 1, 0.01) << "it bends the void as well";
+            }
+            // With sizes of 1 and 0.7 mm in the script what is left of the worst, deep arch and cap, changes by 0.3 %.
+            EXPECT_LT(of.meshError, 0.021) << of.name;
+            // The normals of the corrugated strip turn to and fro by 27 degrees, which a mean curvature says nothing
+            // of.
+            EXPECT_NEAR(felt, 0, of.name == "corrugated strip" ? 0.12 : 0.05) << of.name << ", " << cells << " cells";
         }
 }
 

@@ -1,5 +1,6 @@
 #include "engine/plate/reference/reference_large_shell.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -266,6 +267,32 @@ TEST(StretchEnergy, IsExactForLinearSlopesAndEvenForces)
     direct *= 1e-3 * 1.5e-3;
     EXPECT_NEAR(dot(w, stretchForces(everywhere, membrane, phi, w)) / 2, direct, 1e-12 * std::abs(direct)); // rounding
     EXPECT_NEAR(dot(phi, stretchOf(everywhere, membrane, w, w)) / 2, direct, 1e-12 * std::abs(direct));
+}
+
+/// At the ground of what is held the deflection is whatever a solver leaves there.
+TEST(StretchEnergy, EndsWhereNothingIsStretched)
+{
+    Shell shell;
+    shell.bending   = {{24, 12, 1e-3, 1e-3}, {}, 0.3, 0, NodeField(25, 13, 1.0)};
+    Plate membrane  = shell.bending;
+    shell.stretched = NodeField(shell.bending.grid, 1);
+    NodeField w(shell.bending.grid), phi(shell.bending.grid);
+    for (int i = 0; i <= 24; ++i)
+        for (int j = 0; j <= 12; ++j) {
+            if (i > 15) shell.stretched(i, j) = 0;
+            if (i > 16) w(i, j) = 1e-3 * ((7 * i + 5 * j) % 11);
+            phi(i, j) = std::sin(0.4 * i) * std::sin(0.7 * j);
+        }
+    const auto largestOf = [](const NodeField& field) {
+        double most = 0;
+        for (const double value : field.values()) most = std::max(most, std::abs(value));
+        return most;
+    };
+    EXPECT_EQ(largestOf(stretchOf(shell, membrane, w, w)), 0);
+    EXPECT_EQ(largestOf(stretchForces(shell, membrane, phi, w)), 0);
+    shell.stretched = NodeField();
+    EXPECT_GT(largestOf(stretchOf(shell, membrane, w, w)), 1);
+    EXPECT_GT(largestOf(stretchForces(shell, membrane, phi, w)), 1);
 }
 
 } // namespace

@@ -48,7 +48,7 @@ Shell everySecondOf(const Shell& fine)
     shell.bending.grid      = coarse;
     for (NodeField* field :
          {&shell.bending.rigidity, &shell.bending.foundationShape, &shell.membraneCompliance, &shell.curvatureX,
-          &shell.curvatureZ, &shell.curvatureXZ, &shell.stressBed, &shell.sheared, &shell.sheet})
+          &shell.curvatureZ, &shell.curvatureXZ, &shell.stressBed, &shell.sheared, &shell.stretched})
         *field = everySecondOf(*field, coarse);
     for (NodeField& thrust : shell.thrusts) thrust = everySecondOf(thrust, coarse);
     return shell;

@@ -98,7 +98,7 @@ Shell GridPart::of(const Shell& shell) const
     Shell part   = shell;
     part.bending = of(shell.bending);
     for (NodeField* field : {&part.membraneCompliance, &part.curvatureX, &part.curvatureZ, &part.curvatureXZ,
-                             &part.stressBed, &part.sheared, &part.sheet})
+                             &part.stressBed, &part.sheared, &part.stretched})
         *field = of(*field);
     for (NodeField& thrust : part.thrusts) thrust = of(thrust);
     if (part.stressBed.values().empty()) return part;

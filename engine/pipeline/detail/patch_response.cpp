@@ -8,11 +8,11 @@
 #include "engine/pipeline/detail/body_give.h"
 #include "engine/pipeline/detail/border_twist.h"
 #include "engine/pipeline/detail/coarser_grid.h"
-#include "engine/pipeline/detail/curved_bending.h"
 #include "engine/pipeline/detail/grid_part.h"
 #include "engine/pipeline/detail/shell_patch.h"
 #include "engine/pipeline/detail/stage_clock.h"
 #include "engine/pipeline/detail/whole_object.h"
+#include "engine/plate/curved_bending.h"
 #include "engine/plate/load.h"
 
 namespace palp {
@@ -36,16 +36,17 @@ NodeField unitLoad(const Patch& patch, const PatchSettings& settings)
 
 namespace {
 
-/// \param compliance  of the plate alone [m/N]
-void keep(Patch& patch, const PatchSettings& settings, const GridPart& part, PlateSolution solution, double compliance)
+/// \param compliance  of the plate alone, by the shallow theory [m/N]
+/// \param curved      what it gives way over that, see givesWay() [1]
+void keep(Patch& patch, const PatchSettings& settings, const GridPart& part, PlateSolution solution, double compliance,
+          double curved)
 {
     patch.response      = part.onWhole(solution.deflection);
     patch.report        = std::move(solution.report);
-    const bool shell    = settings.theory == Theory::shell;
-    patch.twist         = shell ? borderTwist(patch) : 0;
-    patch.curvedBending = shell ? curvedBending(patch, compliance) : 1;
-    for (double& w : patch.response.values()) w *= patch.curvedBending;
-    patch.compliance    = compliance * patch.curvedBending + bodyFelt(patch) + patch.twist;
+    patch.curvedBending = curved;
+    for (double& w : patch.response.values()) w *= curved;
+    patch.twist         = settings.theory == Theory::shell ? borderTwist(patch) : 0;
+    patch.compliance    = compliance * curved + bodyFelt(patch) + patch.twist;
     patch.times.prepare = patch.report.setUpMilliseconds;
     patch.times.solve -= patch.times.prepare; // which the clock of this stage counts too
 }
@@ -61,7 +62,8 @@ void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
         patch.curvature
             ? solver.solveFootprints(part.of(shellOf(patch)), {&finger, 1}, 0, settings.tolerance, settings.tolerance)
             : solver.solveFootprints(part.of(patch.plate), {&finger, 1}, 0, settings.tolerance, settings.tolerance);
-    keep(patch, settings, part, std::move(solved.whole), solved.responses.front().work);
+    const FootprintResponse& felt = solved.responses.front();
+    keep(patch, settings, part, std::move(solved.whole), felt.work, givesWay(felt));
 }
 
 void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLattice& lattice, PlateSolver& solver,
@@ -80,9 +82,9 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
     addToCompliances(table, bodyFelt(patch));
     table.chart = chartAtContact(patch);
     fillStiffening(patch.stiffeningAtNodes, lattice, table);
-    keep(patch, settings, part, std::move(middle.solution), middle.compliance);
+    keep(patch, settings, part, std::move(middle.solution), middle.compliance, middle.curved);
     for (ComplianceTable::Entry& entry : table.compliance)
-        entry.value += std::log(patch.curvedBending + patch.twist / middle.compliance);
+        entry.value += std::log1p(patch.twist / (middle.compliance * middle.curved));
 }
 
 // --- 2.6, equation 9: the plate moves the points, and in series with the contact it is what the hand feels

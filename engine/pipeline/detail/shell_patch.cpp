@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/chart/compatible_curvature.h"
 #include "engine/core/extremes.h"
 #include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/whole_object.h"
@@ -187,6 +188,19 @@ PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
     return stress;
 }
 
+/// Returns where slopes stretch a sheet, or would beyond its border: not at the ground of what is held, which carries
+/// no bed, while the deflection beside it may be anything.
+NodeField stretchedOf(const Patch& patch)
+{
+    if (patch.covered.values().empty()) return {};
+    if (patch.held.values().empty()) return NodeField(patch.plate.grid, 1);
+    constexpr double kGround = 1e-2; // share that is held [1]
+    NodeField        stretched(patch.plate.grid);
+    for (std::size_t n = 0; n < stretched.values().size(); ++n)
+        stretched.values()[n] = patch.covered.values()[n] > 0 || patch.held.values()[n] < kGround;
+    return stretched;
+}
+
 Shell shellOf(const Patch& patch)
 {
     const auto curvature = [&](const NodeField CurvatureField::*which) {
@@ -201,7 +215,7 @@ Shell shellOf(const Patch& patch)
             patch.stressBed,
             patch.thrusts,
             patch.sheared,
-            patch.covered};
+            stretchedOf(patch)};
 }
 
 std::string whyFlat(const Patch& patch, const SoftObject& object, const PatchSettings& settings)
@@ -233,7 +247,7 @@ void curvePatch(Patch& patch, const SoftObject& object, const LaidPoints& points
         patch.flatBecause = "the points in the patch window determine no curvature";
         return;
     }
-
+    if (!patch.covered.values().empty()) makeCompatible(*patch.curvature, patch.plate.grid, patch.covered);
     fillCurvatureAtContact(patch, object.material(), settings.foundation);
     patch.sag = sagOf(patch, object, points);
     if (const auto why = whyUnsolvable(shellOf(patch))) {

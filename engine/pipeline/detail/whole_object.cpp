@@ -141,7 +141,7 @@ void cutOutMembrane(Patch& patch)
     if (!patch.covered.values().empty()) patch.stressBed = NodeField(grid);
     patch.spans = isSurrounded(patch) || pieces.count > 1;
     // What is held keeps its shape, like the ground behind it, which carries no bed therefore. Of a cap that is held on
-    // a narrow segment the sheet alone did not: its corners lay on the bed of the free border, and it was felt 5 %
+    // a narrow segment the sheet alone did not: its corners lay on the bed of the free border, and it was felt 8 %
     // softer.
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n) {
         double&      compliance = patch.membraneCompliance.values()[n];

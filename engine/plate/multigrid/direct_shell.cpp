@@ -11,6 +11,7 @@
 #include "engine/compute/processor_list.h"
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
+#include "engine/plate/curved_bending.h"
 #include "engine/plate/host/host_kernels.h"
 #include "engine/plate/host/shell_view.h"
 #include "engine/plate/multigrid/detail/host_call.h"
@@ -417,10 +418,11 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
         for (const Footprint::Part& part : footprint.parts)
             PALP_EXPECT(part.node < ofW.size(), "a footprint lies on nodes that the shell does not have");
     if (!isFactored || firstThrust == 0) return std::nullopt; // firstThrust: as many unknowns have nodes
-    const Shear       shear(shell);
-    FootprintSolution solution;
-    double            worst   = rounding.value_or(0); // share that refinement changes [1]
-    const bool        isExact = rounding && *rounding < kNothing * tolerance;
+    const Shear         shear(shell);
+    const CurvedBending curved(shell);
+    FootprintSolution   solution;
+    double              worst   = rounding.value_or(0); // share that refinement changes [1]
+    const bool          isExact = rounding && *rounding < kNothing * tolerance;
     solution.responses.resize(footprints.size());
     std::vector<std::size_t> firsts{whole / kLoadsTogether * kLoadsTogether};
     for (std::size_t first = 0; first < footprints.size(); first += kLoadsTogether)
@@ -436,6 +438,7 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
                 return std::nullopt;
             solution.responses[n] = responseOf(footprints[n], w);
             solution.responses[n].work += shear.workOf(w) - squeezeWork(shell, w, footprints[n]);
+            solution.responses[n].curved = curved.workOf(w);
             if (n == whole) solution.whole.deflection = std::move(w);
         }
     }

@@ -91,6 +91,7 @@ Which hangingTogether(const PlateGrid& grid, const Which& among, std::span<const
 void goOn(NodeField& field, const PlateGrid& grid, Which known)
 {
     constexpr int    kRings     = 4; // beyond them a bed leaves nothing of the stress that they would load
+    constexpr int    kSweeps    = 16;
     constexpr int    kAway[][2] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
     const auto       node       = [&](int i, int j) { return i * grid.nodesZ() + j; };
     std::vector<int> ring;
@@ -110,7 +111,9 @@ void goOn(NodeField& field, const PlateGrid& grid, Which known)
             }
         return !ring.empty();
     };
+    std::vector<int> far; // nodes beyond the rings
     for (int n = 0; next(); ++n) {
+        if (n >= kRings) far.insert(far.end(), ring.begin(), ring.end());
         for (const int at : ring) {
             const int i = at / grid.nodesZ(), j = at % grid.nodesZ();
             double    mean = 0, along = 0, means = 0, alongs = 0;
@@ -127,6 +130,18 @@ void goOn(NodeField& field, const PlateGrid& grid, Which known)
         }
         for (const int at : ring) known[std::size_t(at)] = 1;
     }
+    // Means are the same along lines, with steps from one to the next, which would stretch a sheet.
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+        for (const int at : far) {
+            const int i = at / grid.nodesZ(), j = at % grid.nodesZ();
+            double    mean = 0, means = 0;
+            for (const auto& [a, b] : kAway) {
+                if (!isKnown(i + a, j + b)) continue;
+                mean += field(i + a, j + b);
+                ++means;
+            }
+            field(i, j) = mean / means;
+        }
 }
 
 } // namespace palp
