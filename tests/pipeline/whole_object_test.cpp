@@ -700,5 +700,34 @@ TEST(WholeObject, ADomeThatIsHeldAtItsRimIsHeldInItsPlaneToo)
     }
 }
 
+/// On the flank of a ridge the sphere of the chart leans, and points of the one face lie behind each other along its
+/// normal. They were taken for a second face, and the panel bent flat there: four times too soft, between neighbours that
+/// were not.
+TEST(WholeObject, TheFlankOfARidgeIsNoSecondFace)
+{
+    const auto                             ridge = [](double x) { return 6e-3 * std::exp(-x * x / (2 * 4e-3 * 4e-3)); };
+    std::mt19937_64                        bits(3);
+    std::vector<glm::dvec3>                points;
+    std::vector<double>                    held;
+    std::uniform_real_distribution<double> jitter(-0.4e-3, 0.4e-3);
+    for (int i = -40; i <= 40; ++i)
+        for (int j = -30; j <= 30; ++j) {
+            const double x = 1e-3 * i + jitter(bits), y = 1e-3 * j + jitter(bits);
+            points.emplace_back(x, y, ridge(x));
+            held.push_back(std::abs(x) > 36e-3);
+        }
+    const SoftObject panel = objectOf(std::move(points), std::move(held), {.thickness = 1e-3, .poissonRatio = 0.45});
+    PatchSettings    settings{.theory = Theory::shell};
+    settings.windowOf = WindowOf::object;
+    PlateSolver host("host");
+    for (const double x : {3e-3, 3.5e-3, 4e-3, 4.5e-3, 5e-3, -4e-3}) {
+        const double     slope = x / (4e-3 * 4e-3) * ridge(x);
+        const glm::dvec3 up    = glm::normalize(glm::dvec3(slope, 0, 1));
+        const Patch      patch = deform(panel, {{x, 0, ridge(x)}, up, true, true}, settings, host);
+        EXPECT_EQ(patch.flatBecause, "") << x;
+        EXPECT_TRUE(patch.curvature) << x;
+    }
+}
+
 } // namespace
 } // namespace palp

@@ -125,17 +125,34 @@ bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field, double foun
            kNothing * (wave * geometricMean(sheetRigidity(patch).values()) + foundation);
 }
 
+/// Returns the surface's own normal at the contact, or the chart's where none is known. The chart's is that of a sphere,
+/// and leans on the flank of a ridge, whose points then lie behind each other along it.
+glm::dvec3 ownNormal(const Patch& patch, const SoftObject& object, std::span<const std::uint32_t> near)
+{
+    const glm::dvec3 chart = patch.chart.frame.normal;
+    const auto       next  = std::ranges::min_element(near, {}, [&](std::uint32_t point) {
+        const glm::dvec3 d = object.positions()[point] - patch.chart.origin;
+        return glm::dot(d, d);
+    });
+    if (next == near.end()) return chart;
+    const glm::dvec3 own = object.survey().normal(*next);
+    if (!(glm::dot(own, own) > 0)) return chart;
+    return glm::dot(own, chart) < 0 ? -own : own;
+}
+
 /// Returns the place of the object's other face behind the contact, if it is so near that both are one sheet: 0.3 to
 /// 2.5 thicknesses.
 std::optional<glm::dvec3> otherFaceBehind(const Patch& patch, const SoftObject& object)
 {
     constexpr double kLeast = 0.3, kMost = 2.5, kSpacings = 2; // thicknesses; radius of the tube [1]
     const double     h      = object.material().thickness;
-    const glm::dvec3 origin = patch.chart.origin, normal = patch.chart.frame.normal;
+    const glm::dvec3 origin = patch.chart.origin;
     const double     radius = kSpacings * patch.spacing;
+    const auto       near   = object.index().gather(origin, std::hypot(kMost * h, radius));
+    const glm::dvec3 normal = ownNormal(patch, object, near);
     glm::dvec3       sum{};
     double           count = 0;
-    for (const std::uint32_t point : object.index().gather(origin, std::hypot(kMost * h, radius))) {
+    for (const std::uint32_t point : near) {
         const glm::dvec3 d     = object.positions()[point] - origin;
         const double     depth = -glm::dot(d, normal);
         if (depth < std::max(kLeast * h, patch.spacing) || depth > kMost * h) continue;
@@ -171,6 +188,19 @@ bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
     return both < kHalf * own;
 }
 
+/// Returns where slopes stretch a sheet, or would beyond its border: not at the ground of what is held, which carries
+/// no bed, while the deflection beside it may be anything.
+NodeField stretchedOf(const Patch& patch)
+{
+    if (patch.covered.values().empty()) return {};
+    if (patch.held.values().empty()) return NodeField(patch.plate.grid, 1);
+    constexpr double kGround = 1e-2; // share that is held [1]
+    NodeField        stretched(patch.plate.grid);
+    for (std::size_t n = 0; n < stretched.values().size(); ++n)
+        stretched.values()[n] = patch.covered.values()[n] > 0 || patch.held.values()[n] < kGround;
+    return stretched;
+}
+
 } // namespace
 
 PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
@@ -186,19 +216,6 @@ PlateEdges stressEdgesFor(const PlateEdges& edges) noexcept
     if (one != sides.end() && std::ranges::count(sides, Edge::free, [](const Edge* side) { return *side; }) == 3)
         **one = Edge::free;
     return stress;
-}
-
-/// Returns where slopes stretch a sheet, or would beyond its border: not at the ground of what is held, which carries
-/// no bed, while the deflection beside it may be anything.
-NodeField stretchedOf(const Patch& patch)
-{
-    if (patch.covered.values().empty()) return {};
-    if (patch.held.values().empty()) return NodeField(patch.plate.grid, 1);
-    constexpr double kGround = 1e-2; // share that is held [1]
-    NodeField        stretched(patch.plate.grid);
-    for (std::size_t n = 0; n < stretched.values().size(); ++n)
-        stretched.values()[n] = patch.covered.values()[n] > 0 || patch.held.values()[n] < kGround;
-    return stretched;
 }
 
 Shell shellOf(const Patch& patch)
