@@ -139,18 +139,24 @@ void makeCompatible(CurvatureField& field, const PlateGrid& grid, const NodeFiel
     const Splines         splines(field, grid, covered);
     const Eigen::VectorXd height = nearest(splines, field, covered);
     if (!height.allFinite()) return;
-    for (int i = splines.alongX.first; i <= splines.alongX.last; ++i)
-        for (int j = splines.alongZ.first; j <= splines.alongZ.last; ++j) {
-            const Axis::At x = splines.alongX.at(i), z = splines.alongZ.at(j);
-            const Bends    of(x, z);
+    const Axis &x = splines.alongX, &z = splines.alongZ;
+    for (int i = x.first; i <= x.last; ++i)
+        for (int j = z.first; j <= z.last; ++j) {
+            const Axis::At atX = x.at(i), atZ = z.at(j);
+            const Bends    of(atX, atZ);
             field.x(i, j) = field.z(i, j) = field.xz(i, j) = 0;
             for (int k = 0; k < kSpan * kSpan; ++k) {
-                const double counts = height[splines.index(x, z, k)];
+                const double counts = height[splines.index(atX, atZ, k)];
                 field.x(i, j) += counts * of.xx[std::size_t(k)];
                 field.z(i, j) += counts * of.zz[std::size_t(k)];
                 field.xz(i, j) += counts * of.xz[std::size_t(k)];
             }
         }
+    // Farther out it stays as it is there: a step would be a load.
+    for (NodeField* values : {&field.x, &field.z, &field.xz})
+        for (int i = 0; i <= grid.cellsX; ++i)
+            for (int j = 0; j <= grid.cellsZ; ++j)
+                (*values)(i, j) = (*values)(std::clamp(i, x.first, x.last), std::clamp(j, z.first, z.last));
 }
 
 } // namespace palp

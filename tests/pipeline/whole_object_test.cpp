@@ -729,5 +729,33 @@ TEST(WholeObject, TheFlankOfARidgeIsNoSecondFace)
     }
 }
 
+/// A strip of a flat and a curved half that is held at one end bends without being stretched, as CalculiX has it two
+/// thicknesses deep. A side of its window that was free, because the ground of what is held reaches it, let it fall by a
+/// tenth.
+TEST(WholeObject, WhatHasAFreeEndStaysLinear)
+{
+    std::mt19937_64                        bits(3);
+    std::vector<glm::dvec3>                points;
+    std::vector<double>                    held;
+    std::uniform_real_distribution<double> jitter(-0.4e-3, 0.4e-3);
+    const auto height = [](double x) { return x < 0 ? 0.0 : std::sqrt(0.04 * 0.04 - x * x) - 0.04; };
+    for (int i = -36; i <= 36; ++i)
+        for (int j = -12; j <= 12; ++j) {
+            const double x = 1e-3 * i + jitter(bits), y = 1e-3 * j + jitter(bits);
+            points.emplace_back(x, y, height(x));
+            held.push_back(x < -32e-3);
+        }
+    const SoftObject strip = objectOf(std::move(points), std::move(held), {.thickness = 1e-3, .poissonRatio = 0.45});
+    PatchSettings    settings{.theory = Theory::shell, .large = Large::on};
+    settings.windowOf = WindowOf::object;
+    PlateSolver host("host");
+    for (const double x : {-15e-3, 0.0}) {
+        const Patch patch = deform(strip, {{x, 0, 0}, {0, 0, 1}, true, true}, settings, host);
+        ASSERT_TRUE(patch.large) << patch.linearBecause;
+        const double secant = patch.large->force.back() / patch.large->reach();
+        EXPECT_NEAR(secant / patch.large->tangent.front(), 1, 0.03) << x << ": it is stretched across a little";
+    }
+}
+
 } // namespace
 } // namespace palp

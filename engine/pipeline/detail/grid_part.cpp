@@ -21,17 +21,18 @@ std::pair<int, int> reach(int first, int last, int cells)
     return {std::clamp((first + last - many) / 4 * 2, 0, cells - many), many}; // in the middle, at an even node
 }
 
-/// Returns the edges of Airy's function on a window whose sides lie in the void. They are clamped: a free one stands
-/// for a frame that holds the void in its plane, and what is curved resists by it (a gutter was felt 1.4 times too
-/// stiff). But all of a side is free on which one node has no bed: what is held there carries forces on beyond the
-/// window.
-PlateEdges edgesInVoid(const NodeField& bed, const PlateGrid& grid)
+/// Returns the edges of Airy's function on a window whose sides lie in the void, or in the ground of what is held,
+/// which has no bed. They are clamped, like any border: a free one stands for a frame that holds them in the plane, by
+/// which what is curved resists (a gutter was felt 1.4 times too stiff), and the slopes that end there load it (laws of
+/// large deflections fell by a tenth). But the ground goes on beyond a side that mostly lies in it, and where there are
+/// thrusts it carries them beyond each side that it reaches: such a side is free.
+PlateEdges edgesInVoid(const NodeField& bed, const PlateGrid& grid, bool thrusts)
 {
     const auto along = [&](bool alongX, int at) {
-        const int last = alongX ? grid.cellsX : grid.cellsZ;
-        for (int k = 0; k <= last; ++k)
-            if (!((alongX ? bed(k, at) : bed(at, k)) > 0)) return Edge::free;
-        return Edge::clamped;
+        const int last   = alongX ? grid.cellsX : grid.cellsZ;
+        int       ground = 0;
+        for (int k = 0; k <= last; ++k) ground += !((alongX ? bed(k, at) : bed(at, k)) > 0);
+        return (thrusts ? ground > 0 : 2 * ground > last) ? Edge::free : Edge::clamped;
     };
     return {along(false, 0), along(false, grid.cellsX), along(true, 0), along(true, grid.cellsZ)};
 }
@@ -102,7 +103,7 @@ Shell GridPart::of(const Shell& shell) const
         *field = of(*field);
     for (NodeField& thrust : part.thrusts) thrust = of(thrust);
     if (part.stressBed.values().empty()) return part;
-    part.stressEdges = edgesInVoid(part.stressBed, part_);
+    part.stressEdges = edgesInVoid(part.stressBed, part_, !part.thrusts.empty());
     makeSidesFirm(part.stressBed, part_);
     // The void of a round object that is held all around may reach the part in a corner alone. Such a bed leaves linear
     // stress functions free, and holds none of the rest.
