@@ -701,8 +701,8 @@ TEST(WholeObject, ADomeThatIsHeldAtItsRimIsHeldInItsPlaneToo)
 }
 
 /// On the flank of a ridge the sphere of the chart leans, and points of the one face lie behind each other along its
-/// normal. They were taken for a second face, and the panel bent flat there: four times too soft, between neighbours that
-/// were not.
+/// normal. They were taken for a second face, and the panel bent flat there: four times too soft, between neighbours
+/// that were not.
 TEST(WholeObject, TheFlankOfARidgeIsNoSecondFace)
 {
     const auto                             ridge = [](double x) { return 6e-3 * std::exp(-x * x / (2 * 4e-3 * 4e-3)); };
@@ -730,8 +730,8 @@ TEST(WholeObject, TheFlankOfARidgeIsNoSecondFace)
 }
 
 /// A strip of a flat and a curved half that is held at one end bends without being stretched, as CalculiX has it two
-/// thicknesses deep. A side of its window that was free, because the ground of what is held reaches it, let it fall by a
-/// tenth.
+/// thicknesses deep. A side of its window that was free, because the ground of what is held reaches it, let it fall by
+/// a tenth.
 TEST(WholeObject, WhatHasAFreeEndStaysLinear)
 {
     std::mt19937_64                        bits(3);

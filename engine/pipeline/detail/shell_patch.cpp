@@ -125,8 +125,8 @@ bool isAsGoodAsFlat(const Patch& patch, const CurvatureField& field, double foun
            kNothing * (wave * geometricMean(sheetRigidity(patch).values()) + foundation);
 }
 
-/// Returns the surface's own normal at the contact, or the chart's where none is known. The chart's is that of a sphere,
-/// and leans on the flank of a ridge, whose points then lie behind each other along it.
+/// Returns the surface's own normal at the contact, or the chart's where none is known. The chart's is that of a
+/// sphere, and leans on the flank of a ridge, whose points then lie behind each other along it.
 glm::dvec3 ownNormal(const Patch& patch, const SoftObject& object, std::span<const std::uint32_t> near)
 {
     const glm::dvec3 chart = patch.chart.frame.normal;
