@@ -1,63 +1,211 @@
 #include "engine/plate/curved_bending.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <vector>
+
+#include <Eigen/SparseCholesky>
 
 namespace palp {
 namespace {
 
-/// Returns the mean of a field over the sheet that is free to bend.
-double meanOf(const NodeField& field, const Shell& shell)
+/// A symmetric tensor in the plane.
+struct Tensor {
+    double xx = 0, zz = 0, xz = 0;
+};
+
+/// Returns the moments of unit rigidity, or the forces of unit stiffness, that go with curvatures or strains.
+Tensor elastic(const Tensor& of, double nu)
 {
-    const bool whole = shell.sheared.values().empty();
-    double     sum = 0, all = 0;
-    for (std::size_t n = 0; n < field.values().size(); ++n) {
-        const double counts = whole ? 1 : shell.sheared.values()[n];
-        sum += counts * field.values()[n];
-        all += counts;
+    return {of.xx + nu * of.zz, of.zz + nu * of.xx, (1 - nu) * of.xz};
+}
+
+double product(const Tensor& a, const Tensor& b)
+{
+    return a.xx * b.xx + a.zz * b.zz + 2 * a.xz * b.xz;
+}
+
+/// What a move of one of a cell's four corners, along x or z, strains the cell by at a place in it.
+using CornerStrains = std::array<Tensor, 8>;
+
+/// \param a, b  the place in the cell, from 0 to 1
+CornerStrains cornerStrains(double a, double b, double sizeX, double sizeZ)
+{
+    CornerStrains strains;
+    for (std::size_t corner = 0; corner < 4; ++corner) {
+        const double x = corner & 2 ? a : 1 - a, z = corner & 1 ? b : 1 - b;
+        const double alongX = (corner & 2 ? z : -z) / sizeX, alongZ = (corner & 1 ? x : -x) / sizeZ;
+        strains[2 * corner]     = {alongX, 0, alongZ / 2};
+        strains[2 * corner + 1] = {0, alongZ, alongX / 2};
     }
-    return all > 0 ? sum / all : 0;
+    return strains;
+}
+
+/// Returns how much more a sheet that turns both ways is than one that turns one way, see CurvedBending.
+double oneWay(const Shell& shell)
+{
+    double both = 0, mean = 0;
+    for (std::size_t n = 0; n < shell.curvatureX.values().size(); ++n) {
+        const double kx = shell.curvatureX.values()[n], kz = shell.curvatureZ.values()[n];
+        const double kxz    = shell.curvatureXZ.values()[n];
+        const double counts = shell.sheared.values().empty() ? 1 : shell.sheared.values()[n];
+        both += counts * std::abs(kx * kz - kxz * kxz);
+        mean += counts * (kx + kz) * (kx + kz) / 4;
+    }
+    return both < mean ? 1 - both / mean : 0;
 }
 
 } // namespace
 
-CurvedBending::CurvedBending(const Shell& shell) : plate_(shell.bending)
+struct CurvedBending::Impl {
+    static constexpr int kCells = 48; ///< along the longer side
+
+    const Shell&     shell;
+    const PlateGrid& fine;
+    const double     share; ///< that counts, see oneWay() [1]
+    const int        step;  ///< cells of the plate's grid in one of these
+    const PlateGrid  grid;
+    NodeField        kx, kz, kxz; ///< curvature at the nodes [1/m]
+
+    Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;
+
+    Impl(const Shell& given, double counts);
+
+    /// Calls visit(i, j, cell) for each node within the sides of the plate's grid.
+    template <class Visit>
+    void eachNode(const Visit& visit) const
+    {
+        for (int i = 1; i < fine.cellsX; ++i)
+            for (int j = 1; j < fine.cellsZ; ++j)
+                visit(i, j, std::size_t((i - 1) / step) * std::size_t(grid.cellsZ) + std::size_t((j - 1) / step));
+    }
+
+    [[nodiscard]] std::array<int, 4> corners(int cell) const noexcept
+    {
+        const int first = cell / grid.cellsZ * grid.nodesZ() + cell % grid.cellsZ;
+        return {first, first + 1, first + grid.nodesZ(), first + grid.nodesZ() + 1};
+    }
+
+    [[nodiscard]] bool   isHeld(int i, int j) const;
+    [[nodiscard]] double workOf(const NodeField& w) const;
+};
+
+/// Whether a side holds the node or one beside it, or the ground is so firm that the sheet does not bend from one node
+/// to the next.
+bool CurvedBending::Impl::isHeld(int i, int j) const
+{
+    const double area = fine.spacingX * fine.spacingZ;
+    const int    a    = i == 1 ? 0 : i + 1 == fine.cellsX ? fine.cellsX : i;
+    const int    b    = j == 1 ? 0 : j + 1 == fine.cellsZ ? fine.cellsZ : j;
+    return palp::isHeld(shell.bending, a, b) ||
+           foundationAt(shell.bending, i, j) * area * area > shell.bending.rigidity(i, j);
+}
+
+CurvedBending::Impl::Impl(const Shell& given, double counts)
+    : shell(given), fine(given.bending.grid), share(counts),
+      step((std::max(fine.cellsX, fine.cellsZ) + kCells - 1) / kCells), grid{(fine.cellsX + step - 2) / step,
+                                                                             (fine.cellsZ + step - 2) / step,
+                                                                             step * fine.spacingX,
+                                                                             step * fine.spacingZ},
+      kx(grid), kz(grid), kxz(grid)
+{
+    constexpr double kFirm = 1e3, kHardly = 1e-9; // of what is held and of what hangs on nothing, over the sheet [1]
+    const auto between = [&](const NodeField& of, int i, int j) {
+        const int a = std::min(i * step, fine.cellsX - 1), b = std::min(j * step, fine.cellsZ - 1);
+        return (of(a, b) + of(a + 1, b) + of(a, b + 1) + of(a + 1, b + 1)) / 4;
+    };
+    for (int i = 0; i <= grid.cellsX; ++i)
+        for (int j = 0; j <= grid.cellsZ; ++j) {
+            kx(i, j)  = between(shell.curvatureX, i, j);
+            kz(i, j)  = between(shell.curvatureZ, i, j);
+            kxz(i, j) = between(shell.curvatureXZ, i, j);
+        }
+    std::vector<double> sheet(std::size_t(grid.cellsX) * std::size_t(grid.cellsZ)), held = sheet;
+    eachNode([&](int i, int j, std::size_t cell) {
+        const double stiff = shell.bending.rigidity(i, j);
+        sheet[cell] += stiff;
+        if (isHeld(i, j)) held[cell] += stiff;
+    });
+    std::array<std::array<double, 8>, 8> element{}; // of a sheet of unit rigidity
+    const double                         nu = shell.bending.poissonRatio, gauss = std::sqrt(1.0 / 12);
+    for (const double a : {0.5 - gauss, 0.5 + gauss})
+        for (const double b : {0.5 - gauss, 0.5 + gauss}) {
+            const CornerStrains strains = cornerStrains(a, b, grid.spacingX, grid.spacingZ);
+            for (std::size_t m = 0; m < 8; ++m)
+                for (std::size_t n = 0; n < 8; ++n) element[m][n] += product(elastic(strains[m], nu), strains[n]) / 4;
+        }
+    const double most = *std::ranges::max_element(sheet), perArea = 1 / (grid.spacingX * grid.spacingZ);
+    std::vector<Eigen::Triplet<double>> entries;
+    for (std::size_t cell = 0; cell < sheet.size(); ++cell) {
+        const std::array<int, 4> corner = corners(int(cell));
+        const double             firm   = (kFirm * held[cell] + kHardly * most) * perArea;
+        for (std::size_t m = 0; m < 8; ++m) {
+            entries.emplace_back(2 * corner[m / 2] + int(m % 2), 2 * corner[m / 2] + int(m % 2), firm);
+            for (std::size_t n = 0; n < 8; ++n)
+                entries.emplace_back(2 * corner[m / 2] + int(m % 2), 2 * corner[n / 2] + int(n % 2),
+                                     sheet[cell] * element[m][n]);
+        }
+    }
+    const auto                  unknowns = Eigen::Index(2 * grid.nodes());
+    Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    factors.compute(matrix);
+}
+
+double CurvedBending::Impl::workOf(const NodeField& w) const
+{
+    const double nu = shell.bending.poissonRatio, perX = 1 / (fine.spacingX * fine.spacingX);
+    const double perZ = 1 / (fine.spacingZ * fine.spacingZ), perXZ = 1 / (4 * fine.spacingX * fine.spacingZ);
+    // Sums over the nodes of each cell, over the area of one [N m].
+    std::vector<Tensor> moments(std::size_t(grid.cellsX) * std::size_t(grid.cellsZ)), shrunk = moments;
+    eachNode([&](int i, int j, std::size_t cell) {
+        const double here = w(i, j), stiff = shell.bending.rigidity(i, j), lower = stiff * here;
+        Tensor &     m = moments[cell], &s = shrunk[cell];
+        m.xx += stiff * (w(i + 1, j) - 2 * here + w(i - 1, j)) * perX;
+        m.zz += stiff * (w(i, j + 1) - 2 * here + w(i, j - 1)) * perZ;
+        m.xz += stiff * (w(i + 1, j + 1) - w(i + 1, j - 1) - w(i - 1, j + 1) + w(i - 1, j - 1)) * perXZ;
+        s.xx += lower * shell.curvatureX(i, j);
+        s.zz += lower * shell.curvatureZ(i, j);
+        s.xz += lower * shell.curvatureXZ(i, j);
+    });
+    const CornerStrains middle = cornerStrains(0.5, 0.5, grid.spacingX, grid.spacingZ);
+    Eigen::VectorXd     right = Eigen::VectorXd::Zero(Eigen::Index(2 * grid.nodes())), turned = right;
+    for (std::size_t cell = 0; cell < moments.size(); ++cell) {
+        const Tensor bent = elastic(moments[cell], nu), forces = elastic(shrunk[cell], nu);
+        const auto   corner = corners(int(cell));
+        for (std::size_t m = 0; m < 4; ++m) {
+            const int         node = corner[m];
+            const std::size_t n    = std::size_t(node);
+            const double      ofX = product(bent, middle[2 * m]), ofZ = product(bent, middle[2 * m + 1]);
+            right[2 * node] += product(forces, middle[2 * m]);
+            right[2 * node + 1] += product(forces, middle[2 * m + 1]);
+            turned[2 * node] += kx.values()[n] * ofX + kxz.values()[n] * ofZ;
+            turned[2 * node + 1] += kxz.values()[n] * ofX + kz.values()[n] * ofZ;
+        }
+    }
+    return share * turned.dot(factors.solve(right)) * fine.spacingX * fine.spacingZ;
+}
+
+CurvedBending::CurvedBending(const Shell& shell)
 {
     if (shell.stretched.values().empty()) return;
-    const double kx = meanOf(shell.curvatureX, shell), kz = meanOf(shell.curvatureZ, shell);
-    const double kxz  = meanOf(shell.curvatureXZ, shell);
-    const double both = std::abs(kx * kz - kxz * kxz), mean = (kx + kz) / 2;
-    if (!(both < mean * mean)) return;
-    const double oneWay = 1 - both / (mean * mean);
-    xx_                 = oneWay * (kx * kx + kxz * kxz);
-    zz_                 = oneWay * (kz * kz + kxz * kxz);
-    xz_                 = oneWay * kxz * (kx + kz);
+    const double counts = oneWay(shell);
+    if (counts > 0) impl_ = std::make_unique<const Impl>(shell, counts);
 }
+
+CurvedBending::~CurvedBending() = default;
 
 double CurvedBending::workOf(const NodeField& w) const
 {
-    if (xx_ == 0 && zz_ == 0) return 0;
-    const PlateGrid& g = plate_.grid;
-    const double nu = plate_.poissonRatio, perX = 1 / (g.spacingX * g.spacingX), perZ = 1 / (g.spacingZ * g.spacingZ);
-    const double perXZ = 1 / (4 * g.spacingX * g.spacingZ), trace = nu * (xx_ + zz_);
-    double       work = 0;
-    for (int i = 1; i < g.cellsX; ++i)
-        for (int j = 1; j < g.cellsZ; ++j) {
-            const double here = w(i, j);
-            const double xx   = (w(i + 1, j) - 2 * here + w(i - 1, j)) * perX;
-            const double zz   = (w(i, j + 1) - 2 * here + w(i, j - 1)) * perZ;
-            const double xz   = (w(i + 1, j + 1) - w(i + 1, j - 1) - w(i - 1, j + 1) + w(i - 1, j - 1)) * perXZ;
-            work +=
-                plate_.rigidity(i, j) * here * ((1 - nu) * (xx * xx_ + zz * zz_ + 2 * xz * xz_) + trace * (xx + zz));
-        }
-    return work * g.spacingX * g.spacingZ;
+    return impl_ ? impl_->workOf(w) : 0;
 }
 
 double givesWay(const FootprintResponse& response) noexcept
 {
-    constexpr double kSofter = 0.25, kStiffer = 1; // [1]
+    constexpr double kSofter = 0.5, kStiffer = 1.5; // [1]
     if (!(response.work > 0)) return 1;
-    return 1 / (1 + std::clamp(2 * response.curved / response.work, -kSofter, kStiffer));
+    return std::exp(-std::clamp(2 * response.curved / response.work, -kSofter, kStiffer));
 }
 
 } // namespace palp

@@ -1,44 +1,48 @@
 #pragma once
+#include <memory>
+
 #include "engine/core/grid.h"
 #include "engine/plate/footprint.h"
 #include "engine/plate/shell.h"
 
 namespace palp {
 
-/// What bends a curved object besides w'': the circle that shrinks is curved more, by k^2 w, which the shallow theory
-/// leaves out.
+/// What bends a curved object besides w'': its points also move along the surface, by u, and where that is curved by k
+/// their normals turn by k u. The shallow theory leaves this out; it bends the sheet by (k u)'.
 ///
-/// The work of the shallow theory's moments along k^2 w is what their energy changes by, to the first order. It counts
-/// where a sheet bends over as much of its length as it is curved by: an arch of radius 50 mm and a span of 64 mm is
-/// felt 2 to 4 % softer, one of 40 mm and 68 mm 5 to 8 %. What else the theory of such shells has, the strain of the
-/// middle and the rotation about the normal times k, changed those, gutters and caps by 0.7 % at most.
-///
-/// k is the mean over the free sheet: how far its normals turn as a whole. A lump that goes up and down with a panel is
-/// no more bent by that, though w'' + k^2 w of it is large while w is taken for the same all over it (with its own k
-/// four lumps were felt 2 to 11 % softer). A strip that is in part flat and in part curved is served badly by a mean.
+/// u is what leaves the sheet as long as it was, u' = k w, and 0 where the object is held: on few nodes, in the sense
+/// of least squares weighed by the rigidity. Of an arch u' k = k^2 w counts, of what is curved in part or to and fro
+/// k' u as well. A lump that goes up and down with a panel is not bent by it, since the work of even moments along
+/// (k u)' is that of its ends.
 ///
 /// Where a sheet is curved both ways, terms of the Gaussian curvature are missing in what its stretching must be
 /// compatible with as well, and these of bending alone make caps softer and cups stiffer than they are, by 2 to 4 %: so
-/// k^2 counts by 1 - |k1 k2| / (mean of k1 and k2)^2, and on spheres and saddles not at all.
-/// \source  Morley 1959, an improvement on Donnell's approximation for thin-walled circular cylinders; Koiter 1960
-/// \differs the energy's change at a given w, not an operator: see givesWay()
+/// they count by 1 - |k1 k2| / (mean of k1 and k2)^2, both taken over the free sheet, and on spheres and saddles not at
+/// all.
+/// \source  Sanders 1959, an improved first-approximation theory for thin shells; Koiter 1960
+/// \differs the energy's change at the shallow theory's w, not an operator: see givesWay(). The rotation about the
+///          normal is left out (it changed arches, gutters and caps by 0.7 % at most), and what the sheet stretches by
 class CurvedBending {
 public:
-    /// \param shell  whose bending outlives this. Without a border, Shell::stretched, nothing counts: dents die away
-    ///          within
+    /// \param shell  which outlives this. Without a border, Shell::stretched, nothing counts: dents die away within
     explicit CurvedBending(const Shell& shell);
+    ~CurvedBending();
+    CurvedBending(const CurvedBending&)            = delete;
+    CurvedBending& operator=(const CurvedBending&) = delete;
 
-    /// Returns the work of the moments of w along k^2 w [N m].
+    /// Returns the work of the moments of w along (k u)' [N m].
     /// \param w  of the load [m]
     [[nodiscard]] double workOf(const NodeField& w) const;
 
 private:
-    const Plate& plate_;
-    double       xx_ = 0, zz_ = 0, xz_ = 0; ///< of k^2 [1/m^2]
+    struct Impl;
+    std::unique_ptr<const Impl> impl_; ///< none where nothing counts
 };
 
-/// Returns how far a footprint gives way over what the shallow theory says [1]: 1 / (1 + q), Rayleigh's quotient, where
-/// q is the change of energy over the energy, from -1/4 to 1 at most, beyond which a first order says nothing.
+/// Returns how far a footprint gives way over what the shallow theory says [1]: exp(-q), where q is the change of
+/// energy over the energy, from -1/2 to 3/2 at most. So a bent bar of a quarter of a circle, of half a circle between
+/// two walls, and waves whose curvature alternates give way to 1 % where q is up to 0.6, and to 10 % at 1; by Rayleigh's
+/// quotient, 1 / (1 + q), they were up to 10 and 40 % too soft.
 [[nodiscard]] double givesWay(const FootprintResponse& response) noexcept;
 
 } // namespace palp

@@ -13,7 +13,7 @@ struct CalculixOutline {
     double           meshError; ///< of c on the finer mesh, which is taken off [1]
 };
 
-inline constexpr std::array<CalculixOutline, 18> kCalculixOutlines{{
+inline constexpr std::array<CalculixOutline, 22> kCalculixOutlines{{
     {"u dome", 0.68283, 8.4e-03},
     {"u vault", 1.0433, 4.2e-03},
     {"l dome", 3.0811, 2.8e-03},
@@ -31,6 +31,10 @@ inline constexpr std::array<CalculixOutline, 18> kCalculixOutlines{{
     {"gutter", 4.9204, 3.2e-03},
     {"gutter at its tip", 0.69099, 1.5e-03},
     {"corrugated strip", 0.67901, 1.3e-02},
+    {"corrugated flank", 8.5224, 2.2e-02},
+    {"j at its tip", 0.14007, 7.2e-03},
+    {"s in its middle", 7.2447, 1.1e-02},
+    {"trough at its side", 0.7396, 6.9e-03},
     {"cap on a segment", 3.0758, 2.0e-02},
 }};
 

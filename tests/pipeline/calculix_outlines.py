@@ -83,8 +83,21 @@ def gutter(x, z):
     return math.sqrt(0.04**2 - z * z) - 0.04
 
 
-def corrugated(x, z):
-    return 0.002 * (math.cos(2 * math.pi * x / 0.024) - 1)
+def corrugated(x0):
+    return lambda x, z: 0.002 * (math.cos(2 * math.pi * (x + x0) / 0.024) - math.cos(2 * math.pi * x0 / 0.024))
+
+
+def j(x, z):  # flat, then R = 40 mm, pressed 25 mm behind where it begins
+    return math.sqrt(0.04**2 - max(x + 0.025, 0) ** 2) - math.sqrt(0.04**2 - 0.025**2)
+
+
+def s(x, z):  # two arcs of R = 30 mm that turn to and fro, pressed where they meet
+    middle = math.sqrt(0.03**2 - 0.018**2)
+    return math.sqrt(0.03**2 - (x + 0.018) ** 2) - middle if x < 0 else middle - math.sqrt(0.03**2 - (x - 0.018) ** 2)
+
+
+def trough(x, z):  # R = 30 mm, pressed 60 degrees from its middle
+    return math.sqrt(0.03**2 - (z + 0.026) ** 2) - math.sqrt(0.03**2 - 0.026**2)
 
 
 def cap(x, z):  # R = 0.2 m, pressed 20 mm beside its middle
@@ -125,7 +138,11 @@ OUTLINES = [
     Outline("curled strip", arch(0.05, 0.02), [Box(-0.056, -0.02, 0.016, 0.02)], [Box(-0.09, -0.04, -0.052, 0.04)]),
     Outline("gutter", gutter, [Box(-0.05, -0.02, 0.05, 0.02)], [Box(-0.06, -0.03, -0.045, 0.03)]),
     Outline("gutter at its tip", gutter, [Box(-0.095, -0.02, 0.005, 0.02)], [Box(-0.11, -0.03, -0.09, 0.03)]),
-    Outline("corrugated strip", corrugated, [Box(-0.036, -0.012, 0.036, 0.012)], [Box(-0.07, -0.04, -0.032, 0.04)]),
+    Outline("corrugated strip", corrugated(0), [Box(-0.036, -0.012, 0.036, 0.012)], [Box(-0.07, -0.04, -0.032, 0.04)]),
+    Outline("corrugated flank", corrugated(0.006), *between(0.036, 0.032, 0.012, 0.006, 0)),
+    Outline("j at its tip", j, [Box(-0.061, -0.012, 0.011, 0.012)], [Box(-0.1, -0.03, -0.057, 0.03)]),
+    Outline("s in its middle", s, *between(0.036, 0.032, 0.012, 0, 0)),
+    Outline("trough at its side", trough, [Box(-0.04, -0.055, 0.04, 0.003)], [Box(-0.06, -0.08, 0.06, -0.0535)]),
     Outline("cap on a segment", cap, [Disc(0, -0.02, 0.041)], [Box(-0.06, -0.08, -0.03, 0.04)]),
 ]
 

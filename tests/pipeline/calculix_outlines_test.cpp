@@ -92,11 +92,42 @@ Outline outlineOf(std::string_view name)
                 {},
                 [](double, double z) { return std::sqrt(40e-3 * 40e-3 - z * z) - 40e-3; }};
     }
-    if (name == "corrugated strip")
-        return {{box(-36e-3, -12e-3, 36e-3, 12e-3)},
-                {[](double x, double) { return x <= -32e-3; }},
+    if (name.starts_with("corrugated")) {
+        const bool   flank = name == "corrugated flank";
+        const double x0    = flank ? 6e-3 : 0;
+        return {{box(-36e-3 - x0, -12e-3, 36e-3 - x0, 12e-3)},
+                {[=](double x, double) { return x + x0 <= -32e-3 || (flank && x + x0 >= 32e-3); }},
                 {},
-                [](double x, double) { return 2e-3 * (std::cos(2 * std::numbers::pi * x / 24e-3) - 1); }};
+                [=](double x, double) {
+                    const auto wave = [](double at) { return std::cos(2 * std::numbers::pi * at / 24e-3); };
+                    return 2e-3 * (wave(x + x0) - wave(x0));
+                }};
+    }
+    if (name == "j at its tip")
+        return {{box(-61e-3, -12e-3, 11e-3, 12e-3)},
+                {[](double x, double) { return x <= -57e-3; }},
+                {},
+                [](double x, double) {
+                    const double round = std::max(x + 25e-3, 0.0);
+                    return std::sqrt(40e-3 * 40e-3 - round * round) - std::sqrt(40e-3 * 40e-3 - 25e-3 * 25e-3);
+                }};
+    if (name == "s in its middle")
+        return {{box(-36e-3, -12e-3, 36e-3, 12e-3)},
+                {[](double x, double) { return std::abs(x) >= 32e-3; }},
+                {},
+                [](double x, double) {
+                    const double middle = std::sqrt(30e-3 * 30e-3 - 18e-3 * 18e-3), away = std::abs(x) - 18e-3;
+                    const double bulge = std::sqrt(30e-3 * 30e-3 - away * away) - middle;
+                    return x < 0 ? bulge : -bulge;
+                }};
+    if (name == "trough at its side")
+        return {{box(-40e-3, -55e-3, 40e-3, 3e-3)},
+                {[](double, double z) { return z <= -53.5e-3; }},
+                {},
+                [](double, double z) {
+                    return std::sqrt(30e-3 * 30e-3 - (z + 26e-3) * (z + 26e-3)) -
+                           std::sqrt(30e-3 * 30e-3 - 26e-3 * 26e-3);
+                }};
     if (name == "cap on a segment")
         return {{disc(0, -20e-3, 41e-3)}, {[](double x, double) { return x <= -30e-3; }}, {}, [](double x, double z) {
                     const double away = z + 20e-3;
@@ -154,8 +185,9 @@ SoftObject objectOf(const Outline& outline, unsigned seed)
 /// With a bed of Airy's function that begins at the border, and with a hold that begins where the first share is held,
 /// they were felt 5 to 18 % too stiff at 256 cells, and less so the finer the cells. With a free side of the window the
 /// U was felt 30 % too stiff. By fits as wide as suit the panel the lumps were felt 40, 29, 11 and 7 % too soft. By the
-/// shallow theory alone arches were felt 3 to 11 % too stiff and a curled strip a quarter too soft, and a cap that is
-/// held on a segment was felt 10 % too soft while what lay behind that kept no shape.
+/// shallow theory alone arches were felt 3 to 11 % too stiff, a curled strip a quarter too soft, and a cap that is held
+/// on a segment 10 % too soft while what lay behind that kept no shape. By a mean curvature an S and a corrugation were
+/// felt up to a third too soft, a trough that is held along a side a quarter.
 TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
 {
     PlateSolver host("host");
@@ -175,10 +207,10 @@ TEST(CalculixOutlines, AreFeltAsStiffAsTheyAreAtAnyCells)
                 EXPECT_NEAR(other.curvedBending / patch.curvedBending, 1, 0.01) << "it bends the void as well";
             }
             // With sizes of 1 and 0.7 mm in the script what is left of the worst, deep arch and cap, changes by 0.3 %.
-            EXPECT_LT(of.meshError, 0.021) << of.name;
-            // The normals of the corrugated strip turn to and fro by 27 degrees, which a mean curvature says nothing
-            // of.
-            EXPECT_NEAR(felt, 0, of.name == "corrugated strip" ? 0.12 : 0.05) << of.name << ", " << cells << " cells";
+            EXPECT_LT(of.meshError, 0.023) << of.name;
+            // Fits of a few millimetres round off where the curvature of an S jumps, and take a sixth off short waves.
+            const bool isRounded = of.name == "s in its middle" || of.name == "corrugated flank";
+            EXPECT_NEAR(felt, 0, isRounded ? 0.08 : 0.05) << of.name << ", " << cells << " cells";
         }
 }
 

@@ -135,6 +135,8 @@ struct DirectShell::Impl {
     Which isOwnSheet; ///< nodes of the sheet, by which errors are judged: what is nearly loose at a ragged border may
                       ///< be anywhere, and is felt by nobody
 
+    std::optional<CurvedBending> curved; ///< once the shell is known to be one
+
     Rim                         division;
     std::vector<int>            ofW, ofPhi; ///< unknown by node, or kNone
     int                         unknowns    = 0;
@@ -196,6 +198,7 @@ DirectShell::Impl::Impl(const Shell& given, std::span<const Footprint> footprint
     divide();
     assemble();
     factor();
+    curved.emplace(shell);
     setUp = millisecondsFrom(began);
 }
 
@@ -418,11 +421,10 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
         for (const Footprint::Part& part : footprint.parts)
             PALP_EXPECT(part.node < ofW.size(), "a footprint lies on nodes that the shell does not have");
     if (!isFactored || firstThrust == 0) return std::nullopt; // firstThrust: as many unknowns have nodes
-    const Shear         shear(shell);
-    const CurvedBending curved(shell);
-    FootprintSolution   solution;
-    double              worst   = rounding.value_or(0); // share that refinement changes [1]
-    const bool          isExact = rounding && *rounding < kNothing * tolerance;
+    const Shear       shear(shell);
+    FootprintSolution solution;
+    double            worst   = rounding.value_or(0); // share that refinement changes [1]
+    const bool        isExact = rounding && *rounding < kNothing * tolerance;
     solution.responses.resize(footprints.size());
     std::vector<std::size_t> firsts{whole / kLoadsTogether * kLoadsTogether};
     for (std::size_t first = 0; first < footprints.size(); first += kLoadsTogether)
@@ -438,7 +440,7 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
                 return std::nullopt;
             solution.responses[n] = responseOf(footprints[n], w);
             solution.responses[n].work += shear.workOf(w) - squeezeWork(shell, w, footprints[n]);
-            solution.responses[n].curved = curved.workOf(w);
+            solution.responses[n].curved = curved->workOf(w);
             if (n == whole) solution.whole.deflection = std::move(w);
         }
     }
