@@ -42,7 +42,23 @@ CornerStrains cornerStrains(double a, double b, double sizeX, double sizeZ)
     return strains;
 }
 
-/// Returns how much more a sheet that turns both ways is than one that turns one way, see CurvedBending.
+using CellStiffness = std::array<std::array<double, 8>, 8>; ///< by moves of its corners
+
+/// Returns how a cell of unit stiffness resists, the mean over it: by four places, which are exact.
+CellStiffness cellStiffness(const PlateGrid& grid, double nu)
+{
+    CellStiffness stiffness{};
+    const double  gauss = std::sqrt(1.0 / 12);
+    for (const double a : {0.5 - gauss, 0.5 + gauss})
+        for (const double b : {0.5 - gauss, 0.5 + gauss}) {
+            const CornerStrains strains = cornerStrains(a, b, grid.spacingX, grid.spacingZ);
+            for (std::size_t m = 0; m < 8; ++m)
+                for (std::size_t n = 0; n < 8; ++n) stiffness[m][n] += product(elastic(strains[m], nu), strains[n]) / 4;
+        }
+    return stiffness;
+}
+
+/// Returns the share that counts where a sheet is curved both ways [1], see CurvedBending.
 double oneWay(const Shell& shell)
 {
     double both = 0, mean = 0;
@@ -111,7 +127,7 @@ CurvedBending::Impl::Impl(const Shell& given, double counts)
       kx(grid), kz(grid), kxz(grid)
 {
     constexpr double kFirm = 1e3, kHardly = 1e-9; // of what is held and of what hangs on nothing, over the sheet [1]
-    const auto between = [&](const NodeField& of, int i, int j) {
+    const auto       between = [&](const NodeField& of, int i, int j) {
         const int a = std::min(i * step, fine.cellsX - 1), b = std::min(j * step, fine.cellsZ - 1);
         return (of(a, b) + of(a + 1, b) + of(a, b + 1) + of(a + 1, b + 1)) / 4;
     };
@@ -127,15 +143,8 @@ CurvedBending::Impl::Impl(const Shell& given, double counts)
         sheet[cell] += stiff;
         if (isHeld(i, j)) held[cell] += stiff;
     });
-    std::array<std::array<double, 8>, 8> element{}; // of a sheet of unit rigidity
-    const double                         nu = shell.bending.poissonRatio, gauss = std::sqrt(1.0 / 12);
-    for (const double a : {0.5 - gauss, 0.5 + gauss})
-        for (const double b : {0.5 - gauss, 0.5 + gauss}) {
-            const CornerStrains strains = cornerStrains(a, b, grid.spacingX, grid.spacingZ);
-            for (std::size_t m = 0; m < 8; ++m)
-                for (std::size_t n = 0; n < 8; ++n) element[m][n] += product(elastic(strains[m], nu), strains[n]) / 4;
-        }
-    const double most = *std::ranges::max_element(sheet), perArea = 1 / (grid.spacingX * grid.spacingZ);
+    const CellStiffness element = cellStiffness(grid, shell.bending.poissonRatio);
+    const double        most = *std::ranges::max_element(sheet), perArea = 1 / (grid.spacingX * grid.spacingZ);
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t cell = 0; cell < sheet.size(); ++cell) {
         const std::array<int, 4> corner = corners(int(cell));
@@ -191,7 +200,9 @@ CurvedBending::CurvedBending(const Shell& shell)
 {
     if (shell.stretched.values().empty()) return;
     const double counts = oneWay(shell);
-    if (counts > 0) impl_ = std::make_unique<const Impl>(shell, counts);
+    if (!(counts > 0)) return;
+    impl_ = std::make_unique<const Impl>(shell, counts);
+    if (impl_->factors.info() != Eigen::Success) impl_.reset(); // rigidities beyond a double's digits
 }
 
 CurvedBending::~CurvedBending() = default;
