@@ -150,6 +150,7 @@ struct Patch {
     NodeField
         held{}; ///< share of each node that the scene holds, by a foundation and in the sheet's plane: from 0 to 1 over
                 ///< a cell [1]; empty: none
+    NodeField   heldInPlane{}; ///< the same in the sheet's plane, where its membrane counts, see heldInPlane()
     std::size_t heldNodes = 0; ///< nodes that the scene holds, of the piece that is touched
     double      apart     = 0; ///< share of the sheet in pieces that are not touched [1]
     NodeField   sheared{};     ///< see Shell, where the window spans the object

@@ -78,9 +78,9 @@ std::string tooDeep(double sag, bool bulges)
 
 /// Says that an object that bends as a whole is deep. By CalculiX: cups of 100 x 40 mm that are held at one end and sag
 /// 15 and 7 % of their length are felt 10 and 2 % too stiff at their tips, caps that are held on a segment and sag 11
-/// and 19 % 5 and 11 % too soft, a trough that sags 45 % and is held along one side 13 % at a far corner. Strips that
-/// curve away from where they are held, in part or to and fro, gutters, dishes, and domes that are held all round are
-/// within 5 %, but for 8 % where curvature changes within the radius of its fits.
+/// and 19 % 5 and 11 % too soft, as is a trough at a far corner that sags 45 % and is held along one side, by 13 %.
+/// Strips that curve away from where they are held, in part or to and fro, gutters, dishes, and domes that are held all
+/// round are within 5 %, and within 12 where curvature changes within the radius of its fits.
 constexpr double kMostSagOfWhole = 0.1; // of what is held at one place [1]
 std::string      tooDeepAsAWhole(double sag)
 {
@@ -94,7 +94,7 @@ std::string      tooDeepAsAWhole(double sag)
 std::string withoutThrust(int leftOut)
 {
     return "the forces in the sheet towards " + std::to_string(leftOut) +
-           " of its supports and holes are left out, those of supports that it surrounds on all sides and of free "
+           " of its supports and holes are left out, those of supports far within it and of free "
            "borders beyond sixteen: it may be felt a quarter to a half too soft";
 }
 
@@ -165,9 +165,14 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                                                   : "curved one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    const double mostSag = whole && !patch.spans ? kMostSagOfWhole : kMostSag;
+    const double     mostSag = whole && !patch.spans ? kMostSagOfWhole : kMostSag;
+    constexpr double kKnown  = 0.8; // q, see givesWay() [1]
     if (patch.sag > mostSag + kShown)
         result.push_back(whole ? tooDeepAsAWhole(patch.sag) : tooDeep(patch.sag, least / most > kBothWays));
+    if (std::abs(std::log(patch.curvedBending)) > kKnown)
+        result.push_back("its points move far along its curved surface, which makes it " +
+                         std::string(patch.curvedBending < 1 ? "stiffer" : "softer") +
+                         " by more than a first order can say: it may be felt a fifth too soft");
     if (patch.unrolled > kFolded && varies(*patch.curvature))
         result.push_back("the surface lies far off a sphere, and a shell's forces do not follow its folds well");
 }

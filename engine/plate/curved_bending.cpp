@@ -44,49 +44,61 @@ CornerStrains cornerStrains(double a, double b, double sizeX, double sizeZ)
 
 using CellStiffness = std::array<std::array<double, 8>, 8>; ///< by moves of its corners
 
-/// Returns how a cell of unit stiffness resists, the mean over it: by four places, which are exact.
+/// Returns how a cell of unit stiffness resists, the mean over it: by four places, which are exact, but to shear by that
+/// in its middle, because such cells shear where a strip bends in its plane and would hold it.
 CellStiffness cellStiffness(const PlateGrid& grid, double nu)
 {
-    CellStiffness stiffness{};
-    const double  gauss = std::sqrt(1.0 / 12);
+    CellStiffness       stiffness{};
+    const CornerStrains middle = cornerStrains(0.5, 0.5, grid.spacingX, grid.spacingZ);
+    const double        gauss  = std::sqrt(1.0 / 12);
     for (const double a : {0.5 - gauss, 0.5 + gauss})
         for (const double b : {0.5 - gauss, 0.5 + gauss}) {
-            const CornerStrains strains = cornerStrains(a, b, grid.spacingX, grid.spacingZ);
+            CornerStrains strains = cornerStrains(a, b, grid.spacingX, grid.spacingZ);
+            for (std::size_t m = 0; m < 8; ++m) strains[m].xz = middle[m].xz;
             for (std::size_t m = 0; m < 8; ++m)
                 for (std::size_t n = 0; n < 8; ++n) stiffness[m][n] += product(elastic(strains[m], nu), strains[n]) / 4;
         }
     return stiffness;
 }
 
-/// Returns the share that counts where a sheet is curved both ways [1], see CurvedBending.
-double oneWay(const Shell& shell)
+/// Returns the means of numbers of cells over those around.
+std::vector<double> meansAround(const std::vector<double>& of, const PlateGrid& grid)
 {
-    double both = 0, mean = 0;
-    for (std::size_t n = 0; n < shell.curvatureX.values().size(); ++n) {
-        const double kx = shell.curvatureX.values()[n], kz = shell.curvatureZ.values()[n];
-        const double kxz    = shell.curvatureXZ.values()[n];
-        const double counts = shell.sheared.values().empty() ? 1 : shell.sheared.values()[n];
-        both += counts * std::abs(kx * kz - kxz * kxz);
-        mean += counts * (kx + kz) * (kx + kz) / 4;
-    }
-    return both < mean ? 1 - both / mean : 0;
+    constexpr int       kAround = 4; // cells to each side
+    std::vector<double> along(of.size()), means(of.size());
+    const auto          at   = [&](int i, int j) { return std::size_t(i) * std::size_t(grid.cellsZ) + std::size_t(j); };
+    const auto          mean = [&](int middle, int cells, const auto& value) {
+        const int first = std::max(middle - kAround, 0), last = std::min(middle + kAround, cells - 1);
+        double    sum = 0;
+        for (int n = first; n <= last; ++n) sum += value(n);
+        return sum / (last - first + 1);
+    };
+    for (int i = 0; i < grid.cellsX; ++i)
+        for (int j = 0; j < grid.cellsZ; ++j)
+            along[at(i, j)] = mean(j, grid.cellsZ, [&](int n) { return of[at(i, n)]; });
+    for (int i = 0; i < grid.cellsX; ++i)
+        for (int j = 0; j < grid.cellsZ; ++j)
+            means[at(i, j)] = mean(i, grid.cellsX, [&](int n) { return along[at(n, j)]; });
+    return means;
 }
 
 } // namespace
 
 struct CurvedBending::Impl {
-    static constexpr int kCells = 48; ///< along the longer side
+    static constexpr int kCells = 48; ///< along each side, at most
 
     const Shell&     shell;
     const PlateGrid& fine;
-    const double     share; ///< that counts, see oneWay() [1]
-    const int        step;  ///< cells of the plate's grid in one of these
+    const int        stepX, stepZ; ///< cells of the plate's grid in one of these
     const PlateGrid  grid;
     NodeField        kx, kz, kxz; ///< curvature at the nodes [1/m]
 
+    std::vector<double> share;           ///< that counts of each cell [1]
+    bool                isSound = false; ///< something is held, and the matrix has its factors
+
     Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors;
 
-    Impl(const Shell& given, double counts);
+    explicit Impl(const Shell& given);
 
     /// Calls visit(i, j, cell) for each node within the sides of the plate's grid.
     template <class Visit>
@@ -94,7 +106,7 @@ struct CurvedBending::Impl {
     {
         for (int i = 1; i < fine.cellsX; ++i)
             for (int j = 1; j < fine.cellsZ; ++j)
-                visit(i, j, std::size_t((i - 1) / step) * std::size_t(grid.cellsZ) + std::size_t((j - 1) / step));
+                visit(i, j, std::size_t((i - 1) / stepX) * std::size_t(grid.cellsZ) + std::size_t((j - 1) / stepZ));
     }
 
     [[nodiscard]] std::array<int, 4> corners(int cell) const noexcept
@@ -104,6 +116,7 @@ struct CurvedBending::Impl {
     }
 
     [[nodiscard]] bool   isHeld(int i, int j) const;
+    void                 findCurvature();
     [[nodiscard]] double workOf(const NodeField& w) const;
 };
 
@@ -118,17 +131,10 @@ bool CurvedBending::Impl::isHeld(int i, int j) const
            foundationAt(shell.bending, i, j) * area * area > shell.bending.rigidity(i, j);
 }
 
-CurvedBending::Impl::Impl(const Shell& given, double counts)
-    : shell(given), fine(given.bending.grid), share(counts),
-      step((std::max(fine.cellsX, fine.cellsZ) + kCells - 1) / kCells), grid{(fine.cellsX + step - 2) / step,
-                                                                             (fine.cellsZ + step - 2) / step,
-                                                                             step * fine.spacingX,
-                                                                             step * fine.spacingZ},
-      kx(grid), kz(grid), kxz(grid)
+void CurvedBending::Impl::findCurvature()
 {
-    constexpr double kFirm = 1e3, kHardly = 1e-9; // of what is held and of what hangs on nothing, over the sheet [1]
-    const auto       between = [&](const NodeField& of, int i, int j) {
-        const int a = std::min(i * step, fine.cellsX - 1), b = std::min(j * step, fine.cellsZ - 1);
+    const auto between = [&](const NodeField& of, int i, int j) {
+        const int a = std::min(i * stepX, fine.cellsX - 1), b = std::min(j * stepZ, fine.cellsZ - 1);
         return (of(a, b) + of(a + 1, b) + of(a, b + 1) + of(a + 1, b + 1)) / 4;
     };
     for (int i = 0; i <= grid.cellsX; ++i)
@@ -137,18 +143,48 @@ CurvedBending::Impl::Impl(const Shell& given, double counts)
             kz(i, j)  = between(shell.curvatureZ, i, j);
             kxz(i, j) = between(shell.curvatureXZ, i, j);
         }
-    std::vector<double> sheet(std::size_t(grid.cellsX) * std::size_t(grid.cellsZ)), held = sheet;
+    // Where the curvature turns from one side to the other it is small, but not its slope: the cells around tell.
+    std::vector<double> both(share.size()), square = both; // |k1 k2|, and the mean of k1 and k2 squared [1/m^2]
+    for (std::size_t cell = 0; cell < share.size(); ++cell) {
+        Tensor mean;
+        for (const int node : corners(int(cell))) {
+            mean.xx += kx.values()[std::size_t(node)] / 4;
+            mean.zz += kz.values()[std::size_t(node)] / 4;
+            mean.xz += kxz.values()[std::size_t(node)] / 4;
+        }
+        both[cell]   = std::abs(mean.xx * mean.zz - mean.xz * mean.xz);
+        square[cell] = (mean.xx + mean.zz) * (mean.xx + mean.zz) / 4;
+    }
+    both   = meansAround(both, grid);
+    square = meansAround(square, grid);
+    for (std::size_t cell = 0; cell < share.size(); ++cell)
+        share[cell] = both[cell] < square[cell] ? 1 - std::pow(both[cell] / square[cell], 2) : 0;
+}
+
+CurvedBending::Impl::Impl(const Shell& given)
+    : shell(given), fine(given.bending.grid), stepX((fine.cellsX + kCells - 1) / kCells),
+      stepZ((fine.cellsZ + kCells - 1) / kCells), grid{(fine.cellsX + stepX - 2) / stepX,
+                                                       (fine.cellsZ + stepZ - 2) / stepZ, stepX * fine.spacingX,
+                                                       stepZ * fine.spacingZ},
+      kx(grid), kz(grid), kxz(grid), share(std::size_t(grid.cellsX) * std::size_t(grid.cellsZ))
+{
+    constexpr double kFirm = 1e3, kHardly = 1e-9; // of what is held and of what hangs on nothing, over the sheet [1]
+    findCurvature();
+    if (std::ranges::all_of(share, [](double of) { return of == 0; })) return;
+    std::vector<double> sheet(share.size()), held = sheet;
     eachNode([&](int i, int j, std::size_t cell) {
         const double stiff = shell.bending.rigidity(i, j);
         sheet[cell] += stiff;
         if (isHeld(i, j)) held[cell] += stiff;
     });
-    const CellStiffness element = cellStiffness(grid, shell.bending.poissonRatio);
-    const double        most = *std::ranges::max_element(sheet), perArea = 1 / (grid.spacingX * grid.spacingZ);
+    // What nothing holds may move as a whole, and no curvature tells how far.
+    if (std::ranges::all_of(held, [](double of) { return of == 0; })) return;
+    const CellStiffness                 element = cellStiffness(grid, shell.bending.poissonRatio);
+    const double                        perArea = 1 / (grid.spacingX * grid.spacingZ);
     std::vector<Eigen::Triplet<double>> entries;
     for (std::size_t cell = 0; cell < sheet.size(); ++cell) {
         const std::array<int, 4> corner = corners(int(cell));
-        const double             firm   = (kFirm * held[cell] + kHardly * most) * perArea;
+        const double             firm   = (kFirm * held[cell] + kHardly * sheet[cell]) * perArea;
         for (std::size_t m = 0; m < 8; ++m) {
             entries.emplace_back(2 * corner[m / 2] + int(m % 2), 2 * corner[m / 2] + int(m % 2), firm);
             for (std::size_t n = 0; n < 8; ++n)
@@ -160,6 +196,7 @@ CurvedBending::Impl::Impl(const Shell& given, double counts)
     Eigen::SparseMatrix<double> matrix(unknowns, unknowns);
     matrix.setFromTriplets(entries.begin(), entries.end());
     factors.compute(matrix);
+    isSound = factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all();
 }
 
 double CurvedBending::Impl::workOf(const NodeField& w) const
@@ -186,23 +223,23 @@ double CurvedBending::Impl::workOf(const NodeField& w) const
         for (std::size_t m = 0; m < 4; ++m) {
             const int         node = corner[m];
             const std::size_t n    = std::size_t(node);
-            const double      ofX = product(bent, middle[2 * m]), ofZ = product(bent, middle[2 * m + 1]);
+            const double      ofX  = share[cell] * product(bent, middle[2 * m]);
+            const double      ofZ  = share[cell] * product(bent, middle[2 * m + 1]);
             right[2 * node] += product(forces, middle[2 * m]);
             right[2 * node + 1] += product(forces, middle[2 * m + 1]);
             turned[2 * node] += kx.values()[n] * ofX + kxz.values()[n] * ofZ;
             turned[2 * node + 1] += kxz.values()[n] * ofX + kz.values()[n] * ofZ;
         }
     }
-    return share * turned.dot(factors.solve(right)) * fine.spacingX * fine.spacingZ;
+    const double work = turned.dot(factors.solve(right)) * fine.spacingX * fine.spacingZ;
+    return std::isfinite(work) ? work : 0;
 }
 
 CurvedBending::CurvedBending(const Shell& shell)
 {
     if (shell.stretched.values().empty()) return;
-    const double counts = oneWay(shell);
-    if (!(counts > 0)) return;
-    impl_ = std::make_unique<const Impl>(shell, counts);
-    if (impl_->factors.info() != Eigen::Success) impl_.reset(); // rigidities beyond a double's digits
+    auto impl = std::make_unique<const Impl>(shell);
+    if (impl->isSound) impl_ = std::move(impl);
 }
 
 CurvedBending::~CurvedBending() = default;

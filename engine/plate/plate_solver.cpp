@@ -173,6 +173,7 @@ bool areAlike(const Shell& a, const Shell& b)
            areAlike(a.bending.foundationShape, b.bending.foundationShape) && a.stressEdges == b.stressEdges &&
            alike(&Shell::membraneCompliance) && alike(&Shell::curvatureX) && alike(&Shell::curvatureZ) &&
            alike(&Shell::curvatureXZ) && alike(&Shell::stressBed) && alike(&Shell::sheared) &&
+           alike(&Shell::stretched) &&
            std::ranges::equal(a.thrusts, b.thrusts,
                               [](const NodeField& one, const NodeField& other) { return areAlike(one, other); });
 }

@@ -376,11 +376,12 @@ TEST_F(Files, WhatCannotBeWrittenIsRefusedBeforeTheWork)
 {
     makeFolder(folder_ / "b");
     std::ofstream(folder_ / "file") << "old";
-    for (const auto& [path, why] : {std::pair("none/a", "none/a: cannot be written: No such file"),
-                                    std::pair("file/a", "file/a: cannot be written: Not a directory"),
-                                    std::pair("b", "b: cannot be written: it is a folder")}) {
+    for (const auto& of : {std::pair("none/a", "none/a: cannot be written: No such file"),
+                           std::pair("file/a", "file/a: cannot be written: Not a directory"),
+                           std::pair("b", "b: cannot be written: it is a folder")}) {
+        const char* const path    = of.first; // clang 14 captures no name of a pair's part
         const std::string refusal = refusalOf([&] { expectWritable(folder_ / path); });
-        EXPECT_TRUE(holds(refusal, {why})) << path << ": " << refusal;
+        EXPECT_TRUE(holds(refusal, {of.second})) << path << ": " << refusal;
         EXPECT_EQ(refusalOf([&] { writeFileWhole(folder_ / path, writeNew); }), refusal);
     }
     const std::string refusal = refusalOf([&] { expectWritableFolder(folder_ / "file" / "b" / "c"); });

@@ -193,11 +193,11 @@ bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
 NodeField stretchedOf(const Patch& patch)
 {
     if (patch.covered.values().empty()) return {};
-    if (patch.held.values().empty()) return NodeField(patch.plate.grid, 1);
+    if (patch.heldInPlane.values().empty()) return NodeField(patch.plate.grid, 1);
     constexpr double kGround = 1e-2; // share that is held [1]
     NodeField        stretched(patch.plate.grid);
     for (std::size_t n = 0; n < stretched.values().size(); ++n)
-        stretched.values()[n] = patch.covered.values()[n] > 0 || patch.held.values()[n] < kGround;
+        stretched.values()[n] = patch.covered.values()[n] > 0 || patch.heldInPlane.values()[n] < kGround;
     return stretched;
 }
 

@@ -6,54 +6,13 @@
 #include <limits>
 #include <utility>
 
+#include "engine/pipeline/detail/node_pieces.h"
 #include "engine/pipeline/detail/whole_object.h"
 
 namespace palp {
 namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
-
-using Nodes = std::vector<std::size_t>;
-
-/// Returns the pieces of some nodes of a grid that hang together, at corners too.
-template <class Which>
-std::vector<Nodes> connected(const PlateGrid& grid, const Which& isOne)
-{
-    std::vector<Nodes> pieces;
-    std::vector<bool>  left(grid.nodes());
-    for (std::size_t n = 0; n < left.size(); ++n) left[n] = isOne(n);
-    const auto take = [&](std::size_t node, Nodes& piece) {
-        if (left[node]) piece.push_back(node);
-        left[node] = false;
-    };
-    for (std::size_t n = 0; n < left.size(); ++n) {
-        Nodes piece;
-        take(n, piece);
-        for (std::size_t k = 0; k < piece.size(); ++k) {
-            const int i = int(piece[k]) / grid.nodesZ(), j = int(piece[k]) % grid.nodesZ();
-            for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
-                for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
-                    take(std::size_t(a * grid.nodesZ() + b), piece);
-        }
-        if (!piece.empty()) pieces.push_back(std::move(piece));
-    }
-    return pieces;
-}
-
-/// Returns how many supports the sheet surrounds, with the bare holes in them, beside another support: forces go round
-/// such a one by an Airy's function that is another one after each turn.
-int postsWithin(const Patch& patch)
-{
-    const PlateGrid&         grid     = patch.plate.grid;
-    const std::vector<Nodes> supports = connected(grid, [&](std::size_t n) { return isHeld(patch, n); });
-    const auto               isAtSide = [&](std::size_t node) {
-        const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
-        return i == 0 || j == 0 || i == grid.cellsX || j == grid.cellsZ;
-    };
-    const auto isOut = [&](const Nodes& support) { return std::ranges::any_of(support, isAtSide); };
-    const auto out   = int(std::ranges::count_if(supports, isOut));
-    return std::max(0, int(supports.size()) - std::max(out, 1));
-}
 
 /// Returns the square of the distance of each node from the nearest one of a piece [m^2]; infinite if it has none.
 /// \source Felzenszwalb and Huttenlocher 2012
@@ -151,21 +110,22 @@ void sortByNearness(std::vector<Nodes>& pieces, const PlateGrid& grid)
 
 } // namespace
 
-FreePieces freePieces(const Patch& patch)
+FreePieces freePieces(const Patch& patch, const HeldInPlane& held)
 {
     constexpr std::size_t kFewest = 9;  // nodes: fewer are a gap between points
     constexpr std::size_t kMost   = 16; // pieces: each takes three solutions
     FreePieces            pieces{std::vector<int>(patch.plate.grid.nodes(), FreePieces::kNone)};
     if (patch.covered.values().empty()) return pieces;
+    const auto isInPlane = [&](std::size_t n) { return !held.share.values().empty() && held.share.values()[n] >= 0.5; };
     std::vector<Nodes> found =
-        connected(patch.plate.grid, [&](std::size_t n) { return !isOnSheet(patch, n) && !isHeld(patch, n); });
+        connected(patch.plate.grid, [&](std::size_t n) { return !isOnSheet(patch, n) && !isInPlane(n); });
     std::erase_if(found, [](const Nodes& piece) { return piece.size() < kFewest; });
     sortByNearness(found, patch.plate.grid);
     pieces.count   = int(std::min(found.size(), kMost));
     pieces.leftOut = int(found.size()) - pieces.count;
     for (std::size_t p = 0; p < found.size(); ++p)
         for (const std::size_t node : found[p]) pieces.of[node] = p < kMost ? int(p) : 0;
-    pieces.leftOut += postsWithin(patch);
+    pieces.leftOut += held.without;
     return pieces;
 }
 

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "engine/core/grid.h"
+#include "engine/pipeline/detail/support_ties.h"
 #include "engine/pipeline/patch.h"
 
 namespace palp {
@@ -11,12 +12,12 @@ struct FreePieces {
     static constexpr int kNone = -1;
 
     std::vector<int> of; ///< piece of each node; kNone: it lies on the sheet, is held, or in a gap between points
-    int              count = 0;
-    int leftOut = 0; ///< pieces farther away, which count as the first, and supports that the sheet surrounds
+    int              count   = 0;
+    int              leftOut = 0; ///< pieces farther away, which count as the first, and HeldInPlane::without
 };
 
 /// Finds them, the largest first, and the others as they are near the touch.
-[[nodiscard]] FreePieces freePieces(const Patch& patch);
+[[nodiscard]] FreePieces freePieces(const Patch& patch, const HeldInPlane& held);
 
 /// Returns the fields by which Airy's function is another linear function at each piece, three for each but the first:
 /// 1, and the places along x and z over a quarter of the window, from its middle; 0 at the others, and smooth between

@@ -126,6 +126,20 @@ void cutOut(Patch& patch, double spacing)
         patch.plate.rigidity.values()[n] *= shareOf(patch.covered.values()[n], patch.beyond);
 }
 
+namespace {
+
+/// Holds the void on the ways of ties: it goes on curving, and gave way to the forces that the tie should carry.
+void groundTies(Patch& patch)
+{
+    if (patch.heldInPlane.values().empty()) return;
+    const double most = extremesOf(sheetRigidity(patch).values()).most; // [N m], as for holdNodes()
+    for (std::size_t n = 0; n < patch.held.values().size(); ++n)
+        if (patch.heldInPlane.values()[n] > patch.held.values()[n] && !(patch.covered.values()[n] > 0))
+            patch.plate.foundationShape.values()[n] = patch.plate.rigidity.values()[n] / most;
+}
+
+} // namespace
+
 /// Beyond a free border no sheet carries a force: Airy's function is clamped to 0 there. By a bed that begins on the
 /// border, narrow curved bands were felt 5 to 19 % too stiff; with a membrane that merely gives way a thousand times as
 /// much, gutters 24 to 53 %, because the void went on curving and resisted at a long lever. The curvature is not cut
@@ -133,11 +147,12 @@ void cutOut(Patch& patch, double spacing)
 /// stresses of its own (a gutter of 100 mm was felt five times too stiff).
 void cutOutMembrane(Patch& patch)
 {
-    constexpr double kFirm  = 1e4; // over the sheet's stiffness: what a ring of held nodes gives way is below 0.1 % [1]
-    const PlateGrid& grid   = patch.plate.grid;
-    const double     area   = grid.spacingX * grid.spacingZ;
-    const FreePieces pieces = freePieces(patch);
-    patch.thrustsLeftOut    = pieces.leftOut;
+    constexpr double kFirm = 1e4; // over the sheet's stiffness: what a ring of held nodes gives way is below 0.1 % [1]
+    const PlateGrid& grid  = patch.plate.grid;
+    const double     area  = grid.spacingX * grid.spacingZ;
+    HeldInPlane      inPlane = heldInPlane(patch);
+    const FreePieces pieces  = freePieces(patch, inPlane);
+    patch.thrustsLeftOut     = pieces.leftOut;
     if (!patch.covered.values().empty()) patch.stressBed = NodeField(grid);
     patch.spans = isSurrounded(patch) || pieces.count > 1;
     // What is held keeps its shape, like the ground behind it, which carries no bed therefore. Of a cap that is held on
@@ -145,12 +160,14 @@ void cutOutMembrane(Patch& patch)
     // softer.
     for (std::size_t n = 0; n < patch.covered.values().size(); ++n) {
         double&      compliance = patch.membraneCompliance.values()[n];
-        const double held       = patch.held.values().empty() ? 0 : patch.held.values()[n];
+        const double held       = inPlane.share.values().empty() ? 0 : inPlane.share.values()[n];
         patch.stressBed.values()[n] =
             (1 - held) * bedAt(patch.inside.values()[n] / cellOf(grid), kBed) * compliance / (area * area);
         compliance *= 1 - held + held / kFirm;
     }
-    patch.thrusts = thrustFields(patch, pieces);
+    patch.heldInPlane = std::move(inPlane.share);
+    groundTies(patch);
+    patch.thrusts     = thrustFields(patch, pieces);
 }
 
 void holdNodes(Patch& patch, const NodeField& shares, double width, double foundation, const NodeField& load)

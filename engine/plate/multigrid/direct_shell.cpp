@@ -135,7 +135,7 @@ struct DirectShell::Impl {
     Which isOwnSheet; ///< nodes of the sheet, by which errors are judged: what is nearly loose at a ragged border may
                       ///< be anywhere, and is felt by nobody
 
-    std::optional<CurvedBending> curved; ///< once the shell is known to be one
+    std::optional<CurvedBending> curved; ///< once something was solved for
 
     Rim                         division;
     std::vector<int>            ofW, ofPhi; ///< unknown by node, or kNone
@@ -198,7 +198,6 @@ DirectShell::Impl::Impl(const Shell& given, std::span<const Footprint> footprint
     divide();
     assemble();
     factor();
-    curved.emplace(shell);
     setUp = millisecondsFrom(began);
 }
 
@@ -421,6 +420,7 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
         for (const Footprint::Part& part : footprint.parts)
             PALP_EXPECT(part.node < ofW.size(), "a footprint lies on nodes that the shell does not have");
     if (!isFactored || firstThrust == 0) return std::nullopt; // firstThrust: as many unknowns have nodes
+    if (!curved) curved.emplace(shell);
     const Shear       shear(shell);
     FootprintSolution solution;
     double            worst   = rounding.value_or(0); // share that refinement changes [1]
