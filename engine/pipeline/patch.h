@@ -130,6 +130,7 @@ struct Patch {
         stressBed{};          ///< see Shell::stressBed; empty: the object does not end in the window
     std::vector<NodeField> thrusts{};              ///< see Shell::thrusts
     int                    thrustsLeftOut = 0;     ///< see FreePieces::leftOut
+    int                    tied           = 0;     ///< see HeldInPlane
     bool                   spans          = false; ///< it is held in several places, or by what surrounds it
     /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
     std::optional<CurvatureField> curvature;

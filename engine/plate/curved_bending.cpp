@@ -44,8 +44,8 @@ CornerStrains cornerStrains(double a, double b, double sizeX, double sizeZ)
 
 using CellStiffness = std::array<std::array<double, 8>, 8>; ///< by moves of its corners
 
-/// Returns how a cell of unit stiffness resists, the mean over it: by four places, which are exact, but to shear by that
-/// in its middle, because such cells shear where a strip bends in its plane and would hold it.
+/// Returns how a cell of unit stiffness resists, the mean over it: by four places, which are exact, but to shear by its
+/// middle, because such cells shear where a strip bends in its plane and would hold it.
 CellStiffness cellStiffness(const PlateGrid& grid, double nu)
 {
     CellStiffness       stiffness{};

@@ -24,8 +24,8 @@ namespace palp {
 ///          normal is left out (it changed arches, gutters and caps by 0.7 % at most), and what the sheet stretches by
 class CurvedBending {
 public:
-    /// \param shell  which outlives this. Without a border, Shell::stretched, nothing counts: dents die away within; nor
-    ///          where nothing is held
+    /// \param shell  which outlives this. Without a border, Shell::stretched, nothing counts, since dents die away
+    ///          within; nor where nothing is held
     explicit CurvedBending(const Shell& shell);
     ~CurvedBending();
     CurvedBending(const CurvedBending&)            = delete;

@@ -97,6 +97,7 @@ HeldInPlane heldInPlane(const Patch& patch)
         const bool tied  = way && way->onSheet <= kNear * std::sqrt(area);
         if (tied)
             for (const std::size_t node : way->nodes) held.share.values()[node] = 1;
+        held.tied += tied;
         reaching += isOut || tied;
     }
     held.without = int(supports.size() - std::max<std::size_t>(reaching, 1));

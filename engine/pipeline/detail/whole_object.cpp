@@ -153,6 +153,7 @@ void cutOutMembrane(Patch& patch)
     HeldInPlane      inPlane = heldInPlane(patch);
     const FreePieces pieces  = freePieces(patch, inPlane);
     patch.thrustsLeftOut     = pieces.leftOut;
+    patch.tied               = inPlane.tied;
     if (!patch.covered.values().empty()) patch.stressBed = NodeField(grid);
     patch.spans = isSurrounded(patch) || pieces.count > 1;
     // What is held keeps its shape, like the ground behind it, which carries no bed therefore. Of a cap that is held on
@@ -167,7 +168,7 @@ void cutOutMembrane(Patch& patch)
     }
     patch.heldInPlane = std::move(inPlane.share);
     groundTies(patch);
-    patch.thrusts     = thrustFields(patch, pieces);
+    patch.thrusts = thrustFields(patch, pieces);
 }
 
 void holdNodes(Patch& patch, const NodeField& shares, double width, double foundation, const NodeField& load)
