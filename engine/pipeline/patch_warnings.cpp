@@ -102,8 +102,8 @@ std::string withoutThrust(int leftOut)
 /// 2.5 mm behind a border, is felt 9 % softer in its middle than by CalculiX, and 74 and 79 beside its borders.
 std::string tiedPins(int tied)
 {
-    return "the sheet is held at " + std::to_string(tied) + (tied == 1 ? " place" : " places") +
-           " that do not reach its border, and in its plane as if it were up to there: beside a small one it may be "
+    return "the sheet is held at " + std::to_string(tied) + (tied == 1 ? " place that does" : " places that do") +
+           " not reach its border, and in its plane as if it were up to there: beside a small one it may be "
            "felt "
            "half as stiff as it is";
 }

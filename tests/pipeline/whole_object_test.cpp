@@ -9,6 +9,7 @@
 
 #include "engine/core/contract.h"
 #include "engine/pipeline/deform.h"
+#include "engine/pipeline/detail/node_pieces.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/plate/load.h"
 #include "tests/support/temporary_folder.h"
@@ -677,7 +678,24 @@ TEST(WholeObject, APinNearABorderCarriesAnArch)
     EXPECT_EQ(patch.tied, 1);
     EXPECT_EQ(patch.thrustsLeftOut, 0);
     EXPECT_NEAR(patch.compliance / 0.0498, 1.1, 0.15);
-    EXPECT_TRUE(says(patch, settings, "do not reach its border"));
+    EXPECT_TRUE(says(patch, settings, "at 1 place that does not reach its border"));
+}
+
+/// The nearest border of a pin on one arm of a U faces the other arm, which is narrow and which no tie holds.
+TEST(WholeObject, ATieOfAPinCrossesNoOtherArm)
+{
+    const auto has = [](double x, double y) {
+        return std::abs(y) < 30e-3 && x < 11e-3 && (std::abs(x) > 8e-3 || y < -20e-3);
+    };
+    const auto    held = [](double x, double y) { return y < -26e-3 || std::hypot(x + 12e-3, y - 10e-3) < 2e-3; };
+    PatchSettings settings{.theory = Theory::shell};
+    settings.windowOf = WindowOf::object;
+    const Patch patch = touched(domeOnSides(has, held), -20e-3, 0, settings);
+    ASSERT_EQ(patch.tied, 1) << "obliquely, through the mouth of the U";
+    const auto strips = connected(patch.plate.grid, [&](std::size_t n) {
+        return patch.covered.values()[n] > 0.5 && patch.heldInPlane.values()[n] > patch.held.values()[n] + 0.5;
+    });
+    EXPECT_EQ(strips.size(), 1U) << "straight to the right the other arm would have one too";
 }
 
 /// Nothing but what is held holds their stresses, and the factor was singular.

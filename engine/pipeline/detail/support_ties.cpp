@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <numbers>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "engine/pipeline/detail/node_pieces.h"
@@ -21,56 +22,69 @@ std::optional<std::size_t> nodeAt(const PlateGrid& grid, double i, double j)
     return std::size_t(a) * std::size_t(grid.nodesZ()) + std::size_t(b);
 }
 
-/// The way of a support to a side of the window.
+/// A straight way from a node to a side of the window.
 struct Way {
-    Nodes  nodes;           ///< that it passes, those of the support too
-    double length  = 0;     ///< from its middle to the border [m]
+    Nodes  nodes;           ///< that it passes
+    double length  = 0;     ///< to the border [m]
     double onSheet = 0;     ///< of that what is not held [m]
     bool   returns = false; ///< to the sheet, after it has left that
 };
 
-/// \param angle  in the grid, its cells being squares
-Way wayOf(const Patch& patch, const Nodes& support, double angle)
+/// \param i, j  place that it begins at [cells]
+Way wayFrom(const Patch& patch, double i, double j, double angle)
 {
     const PlateGrid& grid  = patch.plate.grid;
     const double     stepI = std::cos(angle) / 2, stepJ = std::sin(angle) / 2; // half a cell
+    const double     step    = std::hypot(stepI * grid.spacingX, stepJ * grid.spacingZ);
+    bool             hasLeft = false;
     Way              way;
-    double           middleI = 0, middleJ = 0;
-    for (const std::size_t node : support) {
-        const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
-        middleI += double(i) / double(support.size());
-        middleJ += double(j) / double(support.size());
-        for (int n = 0;; ++n) {
-            const auto at = nodeAt(grid, i + n * stepI, j + n * stepJ);
-            if (!at) break;
-            way.nodes.push_back(*at);
-        }
-    }
-    bool hasLeft = false;
-    for (int n = 0;; ++n) { // along its middle
-        const auto at = nodeAt(grid, middleI + n * stepI, middleJ + n * stepJ);
-        if (!at) break;
+    for (int n = 0;; ++n) {
+        const auto at = nodeAt(grid, i + n * stepI, j + n * stepJ);
+        if (!at) return way;
         const bool sheet = isOnSheet(patch, *at);
-        way.returns      = way.returns || (sheet && hasLeft);
-        hasLeft          = hasLeft || !sheet;
+        way.nodes.push_back(*at);
+        way.returns = way.returns || (sheet && hasLeft);
+        hasLeft     = hasLeft || !sheet;
         if (!sheet) continue;
-        const double step = std::hypot(stepI * grid.spacingX, stepJ * grid.spacingZ);
         way.length += step;
         if (!isHeld(patch, *at)) way.onSheet += step;
     }
-    return way;
 }
 
-/// Returns the shortest way to a border, if there is one that does not come back to the sheet.
-std::optional<Way> shortestWay(const Patch& patch, const Nodes& support)
+/// Returns the nodes that a support passes as it moves to a side of the window; empty: some come back to the sheet.
+Nodes swept(const Patch& patch, const Nodes& support, double angle)
 {
-    constexpr int      kDirections = 32;
-    std::optional<Way> shortest;
-    for (int d = 0; d < kDirections; ++d) {
-        Way way = wayOf(patch, support, 2 * std::numbers::pi * d / kDirections);
-        if (!way.returns && (!shortest || way.length < shortest->length)) shortest = std::move(way);
+    const PlateGrid& grid = patch.plate.grid;
+    Nodes            nodes;
+    for (const std::size_t node : support) {
+        const Way way = wayFrom(patch, int(node) / grid.nodesZ(), int(node) % grid.nodesZ(), angle);
+        if (way.returns) return {};
+        nodes.insert(nodes.end(), way.nodes.begin(), way.nodes.end());
     }
-    return shortest;
+    return nodes;
+}
+
+/// Returns the nodes that tie a support to the nearest border that is near; empty: there is none.
+/// \param near  [m]
+Nodes tieOf(const Patch& patch, const Nodes& support, double near)
+{
+    constexpr int                          kDirections = 32;
+    const PlateGrid&                       grid        = patch.plate.grid;
+    double                                 i = 0, j = 0; // the middle
+    std::vector<std::pair<double, double>> ways;         // lengths [m] and angles
+    for (const std::size_t node : support) {
+        i += double(int(node) / grid.nodesZ()) / double(support.size());
+        j += double(int(node) % grid.nodesZ()) / double(support.size());
+    }
+    for (int d = 0; d < kDirections; ++d) {
+        const double angle = 2 * std::numbers::pi * d / kDirections;
+        const Way    way   = wayFrom(patch, i, j, angle);
+        if (way.onSheet <= near) ways.emplace_back(way.length, angle);
+    }
+    std::ranges::sort(ways);
+    for (const auto& [length, angle] : ways)
+        if (Nodes nodes = swept(patch, support, angle); !nodes.empty()) return nodes;
+    return {};
 }
 
 } // namespace
@@ -92,11 +106,10 @@ HeldInPlane heldInPlane(const Patch& patch)
     area *= grid.spacingX * grid.spacingZ;
     std::size_t reaching = 0;
     for (const Nodes& support : supports) {
-        const bool isOut = std::ranges::any_of(support, isAtSide);
-        const auto way   = isOut ? std::nullopt : shortestWay(patch, support);
-        const bool tied  = way && way->onSheet <= kNear * std::sqrt(area);
-        if (tied)
-            for (const std::size_t node : way->nodes) held.share.values()[node] = 1;
+        const bool  isOut = std::ranges::any_of(support, isAtSide);
+        const Nodes tie   = isOut ? Nodes{} : tieOf(patch, support, kNear * std::sqrt(area));
+        for (const std::size_t node : tie) held.share.values()[node] = 1;
+        const bool tied = !tie.empty();
         held.tied += tied;
         reaching += isOut || tied;
     }
