@@ -74,6 +74,7 @@ while [ $n -lt "$instants" ]; do
 done
 if "$palpate" study plan.json --participant P01 --out study --clock virtual <keys >out.txt 2>err.txt && rows | cmp -s - expected; then pass; else complain "the study did not end: $(cat err.txt $table)"; fi
 
+echo "$hit of $n kills met a study at work; the others came after its end"
 [ $hit -gt 0 ] && pass || complain "no study was killed before it ended by itself"
 
 conclude
