@@ -193,7 +193,7 @@ const Patch* Deformation::middleFor(const Contact& contact)
         glm::dvec3 sum{};
         for (const glm::dvec3& point : object_->positions()) sum += point;
         const auto nearest = object_->index().nearest(sum / double(object_->size()), 1).front().point;
-        middle_.emplace(object_->positions()[nearest], object_->survey().normal(nearest));
+        middle_            = Middle{object_->positions()[nearest], object_->survey().normal(nearest), {}};
     }
     const bool isFront = glm::dot(middle_->normal, contact.outward) >= 0;
     auto&      window  = middle_->windows[isFront ? 0 : 1];

@@ -142,15 +142,15 @@ Object wholeObject(std::string_view name)
         return lobe;
     }
     if (const auto between = std::ranges::find(kBetween, name, &Between::name); between != kBetween.end()) {
-        const auto& [_, length, width, along, across] = *between;
-        constexpr double kHeld                        = 7e-3; // beyond either end [m]
+        const Between    of    = *between;
+        constexpr double kHeld = 7e-3; // beyond either end [m]
         Object           arch{[=](double x, double y) {
-                        x *= length / 2 + kHeld;
-                        y *= width / 2;
-                        return glm::dvec3(x, y, -(along * x * x + across * y * y) / 2);
+                        x *= of.length / 2 + kHeld;
+                        y *= of.width / 2;
+                        return glm::dvec3(x, y, -(of.along * x * x + of.across * y * y) / 2);
                     },
-                    length + 2 * kHeld, width};
-        arch.held = [=](const glm::dvec3& p) { return std::abs(p.x) > length / 2; };
+                    of.length + 2 * kHeld, of.width};
+        arch.held = [=](const glm::dvec3& p) { return std::abs(p.x) > of.length / 2; };
         return arch;
     }
     const double bend = name == "disc" ? 0 : name == "dish" ? 10 : 5; // [1/m]

@@ -9,6 +9,7 @@
 #include "tests/soak/faulty_device.h"
 #include "tests/soak/faulty_recording.h"
 #include "tests/soak/invariants.h"
+#include "tests/soak/passage.h"
 #include "tests/soak/soak_hand.h"
 
 namespace palp::soak {
@@ -66,6 +67,7 @@ EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformati
     Updates            updates;
     Operator           helper;
     Invariants         invariants(mostForce(scene, hand.device->info()), glm::length(hand.device->info().weight));
+    Passage            passage(object);
     std::ostringstream what;
     what << name << ", " << ticks << " ticks, an answer each " << every << ", troubles of the solver " << solverRate;
     report.what = what.str();
@@ -91,6 +93,7 @@ EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformati
         if (recording) recording->push(record);
 
         report.wrong = invariants.check(record, given, dt, servo.governor().settings());
+        if (!report.wrong) report.wrong = passage.check(record);
         if (!report.wrong) report.wrong = invariants.checkTable(servo.tableInUse(), n % 32 == 0);
         ++report.ticks;
     }
@@ -100,6 +103,7 @@ EpisodeReport runEpisode(const Scene& scene, const SoftObject& object, Deformati
         if (!report.wrong) report.wrong = wrong;
     }
     report.pressing = invariants.pressing();
+    report.judged   = passage.judged();
     report.troubles = device.troubles() + clock.troubles() + (recording ? 1 : 0);
     return report;
 }

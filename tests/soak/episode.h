@@ -12,6 +12,7 @@ namespace palp::soak {
 struct EpisodeReport {
     std::uint64_t              ticks    = 0;
     std::uint64_t              pressing = 0; ///< ticks with a force
+    std::uint64_t              judged   = 0; ///< ticks without contact so near the surface that its side was known
     std::uint64_t              troubles = 0; ///< of the device, the clock and the files
     std::string                hand;         ///< one of kHands
     std::string                what;         ///< the hand and its rates, for a person

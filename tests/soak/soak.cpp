@@ -39,7 +39,7 @@ struct Options {
 };
 
 struct Totals {
-    std::uint64_t batches = 0, sessions = 0, ticks = 0, pressing = 0, troubles = 0, solved = 0;
+    std::uint64_t batches = 0, sessions = 0, ticks = 0, pressing = 0, judged = 0, troubles = 0, solved = 0;
 
     void add(const Totals& other)
     {
@@ -47,6 +47,7 @@ struct Totals {
         sessions += other.sessions;
         ticks += other.ticks;
         pressing += other.pressing;
+        judged += other.judged;
         troubles += other.troubles;
         solved += other.solved;
     }
@@ -55,7 +56,8 @@ struct Totals {
 std::ostream& operator<<(std::ostream& out, const Totals& t)
 {
     return out << t.batches << " batches, " << t.sessions << " sessions, " << t.ticks << " ticks (" << t.pressing
-               << " with a force), " << t.troubles << " troubles, " << t.solved << " plates solved";
+               << " with a force, " << t.judged << " without contact at the surface), " << t.troubles << " troubles, "
+               << t.solved << " plates solved";
 }
 
 Options parsed(int count, char** words)
@@ -123,7 +125,7 @@ bool runBatch(const Options& options, const std::vector<ShippedScene>& scenes, s
     FaultySolver     solver(deformation, chance.bits());
     for (int n = 0; n < options.sessions; ++n) {
         const EpisodeReport report = runEpisode(scene, object, deformation, solver, chance.bits());
-        totals.add({0, 1, report.ticks, report.pressing, report.troubles, 0});
+        totals.add({0, 1, report.ticks, report.pressing, report.judged, report.troubles, 0});
         pressed[report.hand] += report.pressing;
         if (!report.wrong) continue;
         std::cout << "FOUND in scene " << shipped.name << ", session " << n << " (" << report.what
@@ -131,7 +133,7 @@ bool runBatch(const Options& options, const std::vector<ShippedScene>& scenes, s
                   << options.sessions << " --batch " << number << std::endl;
         return false;
     }
-    totals.add({1, 0, 0, 0, solver.troubles(), solver.solved()});
+    totals.add({1, 0, 0, 0, 0, solver.troubles(), solver.solved()});
     return true;
 }
 
@@ -146,8 +148,8 @@ std::uint64_t resumed(const Options& options, Totals& totals)
         std::uint64_t      seed = 0, number = 0;
         Totals             one;
         char               end = 0;
-        words >> seed >> number >> one.batches >> one.sessions >> one.ticks >> one.pressing >> one.troubles >>
-            one.solved;
+        words >> seed >> number >> one.batches >> one.sessions >> one.ticks >> one.pressing >> one.judged >>
+            one.troubles >> one.solved;
         if (!(words >> end) || end != '.') { // cut short by a kill
             ignored += !line.empty();
             continue;
@@ -181,7 +183,7 @@ int run(const Options& options)
             std::ofstream(options.state, std::ios::app)
                 << '\n'
                 << options.seed << ' ' << next << ' ' << one.batches << ' ' << one.sessions << ' ' << one.ticks << ' '
-                << one.pressing << ' ' << one.troubles << ' ' << one.solved << " ." << std::endl;
+                << one.pressing << ' ' << one.judged << ' ' << one.troubles << ' ' << one.solved << " ." << std::endl;
         next += options.step;
     } while (options.batch < 0 && std::chrono::duration<double>(Clock::now() - began).count() < options.seconds);
     std::cout << all << std::endl;
