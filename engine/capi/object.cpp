@@ -122,6 +122,10 @@ std::vector<Triangle> facesOf(const palpate_points& points)
 {
     std::vector<Triangle> faces;
     if (points.face_count == 0) return faces;
+    constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 2;
+    if (points.face_count > kMost)
+        throw Error("faces: expected a count of at most " + std::to_string(kMost) + ", found " +
+                    std::to_string(points.face_count));
     const std::uint32_t* const corners = &demand(points.faces, "faces");
     faces.resize(points.face_count);
     for (std::size_t n = 0; n < points.face_count; ++n)
@@ -162,15 +166,16 @@ palpate_object objectOf(const palpate_points& points, Scene scene)
                                  kMostStiffening, "stiffening", "1/m");
     given.foundation  = valuesOf(points, points.foundation, points.foundation_type, points.foundation_stride,
                                  kLeastFoundation, kMostFoundation, "foundation", "Pa/m");
-    SoftObject object = palp::objectOf(asTouched(std::move(given), scene), scene).object;
+    auto       own    = std::make_shared<const LoadedCloud>(asTouched(std::move(given), scene));
+    SoftObject object = palp::objectOf(*own, scene).object;
     object.survey().expectSurface();
-    return {std::move(scene), std::move(object)};
+    return {std::move(scene), std::move(object), std::move(own)};
 }
 
 palpate_object objectOf(Scene scene)
 {
     SoftObject object = loadObject(scene).object;
-    return {std::move(scene), std::move(object)};
+    return {std::move(scene), std::move(object), nullptr};
 }
 
 } // namespace

@@ -71,7 +71,8 @@ typedef enum palpate_code {
 
 /** Returns "0.2.0". */
 PALPATE_API const char* palpate_version(void);
-/** Returns why the last call of this thread failed; empty if none did. Valid until this thread's next call. */
+/** Returns why the last call of this thread failed; empty if none did. Valid until this thread's next call; a
+   palpate_session_step() that is done leaves it as it is. */
 PALPATE_API const char* palpate_error_text(void);
 /** Returns who took over in the last call of this thread, and why, as a sentence for a person: a processor was lost or too
    small, or a plate did not converge, and another solver gave the answer, most often more slowly. Empty if none did. Valid
@@ -189,7 +190,7 @@ typedef struct palpate_path {
     const double* place;     /**< its middle [m]; NULL: the scene's */
     const double* from;      /**< the side that the finger comes from; NULL: the scene's */
     const double* direction; /**< along the surface; NULL: the east of the map */
-    double        reach;     /**< to either side [m]; 0: a third of the window */
+    double        reach;     /**< to either side [m]; 0: a third of the window, or of the object that it spans */
     int           places;    /**< with a finger at rest, 3 to 1001; 0: 41 */
 } palpate_path;
 
@@ -234,7 +235,8 @@ typedef struct palpate_hand {
     double   velocity[3]; /**< filtered [m/s]; all 0: taken from the positions of the last 15 ms */
     double   age;         /**< of the position [s]; of one that is repeated until a tracker's next it grows, or that
                              next one may count as a jump: more than 1 mm and 4 m/s since the last takes the force */
-    uint32_t buttons;     /**< bit 0, held for 20 ms, clears a fault of the governor */
+    uint32_t buttons;     /**< bit 0, held for 20 ms, clears a fault of the governor; that of the scene's clutch_button
+                             takes the force and holds the tool at answer.proxy while it is down */
     uint32_t absent;      /**< not 0: the device has no position now; no force flows */
 } palpate_hand;
 
@@ -302,7 +304,7 @@ typedef enum palpate_edge {
 /** A Kirchhoff plate of varying flexural rigidity on a foundation, (cells_x + 1) x (cells_z + 1) nodes, x first. */
 typedef struct palpate_plate {
     size_t        size;       /**< of this struct, as PALPATE_INIT sets it */
-    int           cells_x;    /**< along x, 4 to 4096 */
+    int           cells_x;    /**< along x, 4 to 4096; 8 388 480 nodes in all */
     int           cells_z;    /**< along z, likewise */
     double        size_x;     /**< [m] */
     double        size_z;     /**< [m] */

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <atomic>
+#include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -124,7 +126,7 @@ int palpate_session_create(const palpate_object* object, const palpate_session_s
         demand(out, "out")            = nullptr;
         const palpate_object& of      = demand(object, "object");
         auto                  session = std::unique_ptr<palpate_session>(
-            new palpate_session{SteppedSession(of.object, of.scene, deviceOf(settings))});
+            new palpate_session{SteppedSession(of.object, of.scene, deviceOf(settings), of.own)});
         keepTakeover(session->session.takeover());
         *out = session.release();
     });
@@ -202,6 +204,9 @@ int palpate_run(const palpate_object* object, const double* times, const double*
     return guarded([&] {
         const palpate_object& of = demand(object, "object");
         demand(times, "times"), demand(places, "places");
+        constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 2;
+        if (count == 0 || count > kMost)
+            throw Error("count: expected 1 to " + std::to_string(kMost) + " places, found " + std::to_string(count));
         if (ticks > 0) demand(forces, "forces");
         std::vector<HandPose> poses(count);
         for (std::size_t n = 0; n < count; ++n) poses[n] = {times[n] - times[0], vectorOf(places + 3 * n)};

@@ -42,15 +42,17 @@ glm::dvec3 placeOf(const double* three)
     return place;
 }
 
-Contact contactAt(const palpate_object& object, const double* place, const double* from)
+/// \param settings  settledFor() the object
+Contact contactAt(const palpate_object& object, const PatchSettings& settings, const double* place, const double* from)
 {
     constexpr double kReach = 0.25; // of the window, as the command line takes it
-    return touchAt(object.object, placeOf(place), directionOf(from, "from"), kReach * object.scene.patch.window);
+    return touchAt(object.object, placeOf(place), directionOf(from, "from"), kReach * settings.window);
 }
 
-Patch patchAt(const palpate_object& object, const double* place, const double* from, PlateSolver& solver)
+Patch patchAt(const palpate_object& object, const PatchSettings& settings, const double* place, const double* from,
+              PlateSolver& solver)
 {
-    Patch patch = deform(object.object, contactAt(object, place, from), object.scene.patch, solver);
+    Patch patch = deform(object.object, contactAt(object, settings, place, from), settings, solver);
     demandDeformed(patch, "try a larger window");
     demandConverged(patch);
     return patch;
@@ -68,10 +70,11 @@ Path pathOf(const palpate_object& object, const palpate_path& given)
     constexpr double kShare  = 1.0 / 3; // of the window, beyond which the middle is not felt [1]
     constexpr int    kFewest = 3, kMost = 1001;
     Path             path{object.scene, {}};
+    path.scene.patch = settledFor(object.object, path.scene.patch);
     if (given.place) path.scene.place = placeOf(given.place);
     if (given.from) path.scene.from = directionOf(given.from, "from");
     const double most  = object.object.cloud().bounds().diagonal();
-    const double reach = given.reach == 0 ? kShare * path.scene.patch.window : given.reach;
+    const double reach = given.reach == 0 ? kShare * bentSize(object.object, path.scene.patch) : given.reach;
     if (!(reach > 0 && reach <= most))
         throw Error("reach: expected a length above 0 and at most that of the object, " + std::to_string(most) +
                     " m, found " + std::to_string(reach));
@@ -113,14 +116,15 @@ int palpate_touch(const palpate_object* object, const double place[3], const dou
         static_cast<void>(taken(result, "palpate_touch_result"));
         const palpate_object& of = demand(object, "object");
         PlateSolver           solver(of.scene.solver);
-        const Patch           patch = patchAt(of, place, from, solver);
+        const PatchSettings   settings = settledFor(of.object, of.scene.patch);
+        const Patch           patch    = patchAt(of, settings, place, from, solver);
         palpate_touch_result  own{};
         own.felt_stiffness       = patch.feltStiffness;
         own.compliance           = patch.compliance;
         own.contact_stiffness    = patch.contactStiffness;
         own.rigidity             = rigidityAtContact(patch);
         own.solver_error         = patch.report.errorEstimate.value_or(kNone);
-        own.discretisation_error = discretisationError(patch, of.scene.patch, solver).value_or(kNone);
+        own.discretisation_error = discretisationError(patch, settings, solver).value_or(kNone);
         own.stiffening           = patch.stiffening;
         put(patch.contact.point, own.place);
         put(patch.chart.frame.normal, own.normal);
@@ -138,7 +142,7 @@ int palpate_touch_displaced(const palpate_object* object, const double place[3],
         demand(xyz, "xyz");
         if (!std::isfinite(force)) throw Error("force: expected a finite number [N], found " + std::to_string(force));
         PlateSolver  solver(of.scene.solver);
-        const Patch  patch = patchAt(of, place, from, solver);
+        const Patch  patch = patchAt(of, settledFor(of.object, of.scene.patch), place, from, solver);
         const double load  = pressOf(patch, of.object.material(), std::abs(force)).load;
         const auto   moved = displaced(of.object.cloud(), patch, std::copysign(load, force));
         for (std::size_t n = 0; n < moved.size(); ++n) put(moved[n], xyz + 3 * n);
@@ -154,8 +158,11 @@ int palpate_felt_map(const palpate_object* object, const double* places, const d
         if (failed) *failed = 0;
         if (count == 0) return;
         demand(places, "places"), demand(felt, "felt");
-        const auto at = [&](std::size_t n) { return contactAt(of, places + 3 * n, from ? from + 3 * n : nullptr); };
-        const FeltTouches all = feltTouches(of.object, of.scene.patch, count, at, of.scene.solver);
+        const PatchSettings settings = settledFor(of.object, of.scene.patch);
+        const auto          at       = [&](std::size_t n) {
+            return contactAt(of, settings, places + 3 * n, from ? from + 3 * n : nullptr);
+        };
+        const FeltTouches all = feltTouches(of.object, settings, count, at, of.scene.solver);
         std::ranges::copy(all.stiffness, felt);
         if (failed) *failed = all.leftOut;
         keepTakeover(all.takeover);

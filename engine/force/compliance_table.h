@@ -46,7 +46,8 @@ struct ComplianceTable {
     double        spacing = 0;        ///< of the entries [m]
     Entries       compliance{};       ///< ln c
     Entries       contactStiffness{}; ///< ln k_c, of the rigidity's geometric mean over the footprint
-    bool          lasts = false; ///< of an object that its window spans: where it reaches it is as good as the next
+    bool          lasts    = false; ///< of an object that its window spans: where it reaches it is as good as the next
+    bool          ended    = false; ///< it lasted until now, and what is touched now has none
     bool          stiffens = false; ///< b varies from place to place; else the next is not read
     Entries       stiffening{};     ///< b, see DepthLaw: its mean over the footprint [1/m]
 

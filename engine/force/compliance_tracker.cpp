@@ -7,9 +7,8 @@
 namespace palp {
 namespace {
 
-constexpr double kLongestGuess = 0.25; ///< [s] as long as a table may stay in use
-constexpr double kRate         = 10;   ///< [1/s] 1 % per ms, our own prototype's: faster is felt as a tick, slower lags
-constexpr double kDepth        = 2e-3; ///< [m] at which an offset of b is as much of the tangent as one of ln k
+constexpr double kRate  = 10;   ///< [1/s] 1 % per ms, our own prototype's: faster is felt as a tick, slower lags
+constexpr double kDepth = 2e-3; ///< [m] at which an offset of b is as much of the tangent as one of ln k
 
 } // namespace
 
@@ -68,7 +67,9 @@ void ComplianceTracker::adopt(const ComplianceTick& now) noexcept
 
     const bool                    guessed = std::exchange(guessing_, false);
     const ComplianceTable::Values after   = lookUp(now.contact);
-    fits_                                 = fits_ || guessed;
+    guessing_                             = guessed && table_->ended; // it was made for another place
+    if (guessing_) return;
+    fits_ = fits_ || guessed;
     carry(compliance_, before.lnCompliance, after.lnCompliance, kRate);
     carry(contact_, before.lnContactStiffness, after.lnContactStiffness, kRate);
     if (after.stiffening)
@@ -94,7 +95,7 @@ std::optional<LocalCompliance> ComplianceTracker::tick(const ComplianceTick& now
     flown_            = flown_ || !touching_;
     if (landed || !touching_) land(now);
     if (now.newest && now.newest->sequence != (table_ ? table_->sequence : 0) && now.newest->usable()) adopt(now);
-    if (guessing_ && now.time - landed_ > kLongestGuess) guessing_ = false;
+    if (guessing_ && now.time - landed_ > longestGuess_) guessing_ = false;
     if (!answers()) return {};
 
     const ComplianceTable::Values here = lookUp(now.contact);

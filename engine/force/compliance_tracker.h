@@ -60,15 +60,18 @@ struct LocalCompliance {
 /// what it says is no value to keep.
 ///
 /// A contact that finds no table, or that begins beyond its reach, is answered by the homogeneous law of its place, if
-/// there is one, until its first table comes. Where none comes for a quarter of a second there is no answer: what
-/// cannot be solved for so long is most often a wrong unit, and that law would be as wrong.
+/// there is one, until its first table comes; one that ended is none. Where none comes for a quarter of a second, or
+/// for as long as a slow thread may take, there is no answer: what cannot be solved for so long is most often a wrong
+/// unit, and that law would be as wrong.
 /// \thread the servo's; no allocation, lock or throw
 /// \source our own prototype, with slopes in place of twice as many footprints; README.md here has the measurements
 class ComplianceTracker {
 public:
-    /// \param first  answers until there is a table; outlives this; null: nothing does
-    explicit ComplianceTracker(ComplianceLaw law = ComplianceLaw::table, const HomogeneousLaw* first = nullptr) noexcept
-        : law_(law), first_(first)
+    /// \param first         answers until there is a table; outlives this; null: nothing does
+    /// \param longestGuess  [s] from the beginning of a contact for which it does
+    explicit ComplianceTracker(ComplianceLaw law = ComplianceLaw::table, const HomogeneousLaw* first = nullptr,
+                               double longestGuess = 0.25) noexcept
+        : law_(law), first_(first), longestGuess_(longestGuess)
     {
     }
 
@@ -102,7 +105,8 @@ private:
     [[nodiscard]] double hand(Carried& carried, double wanted, double time) const noexcept;
 
     ComplianceLaw         law_;
-    const HomogeneousLaw* first_; // may be null
+    const HomogeneousLaw* first_;        // may be null
+    double                longestGuess_; // [s]
     /// The table in use, where the deformation thread put it; null: none yet. A copy would cost the servo's tick 2.4
     /// KB.
     const ComplianceTable* table_    = nullptr;

@@ -243,7 +243,7 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
 
     FootprintLattice lattice{.shape = shape, .wholeObject = wholeObject, .shells = std::make_shared<ShellWindows>()};
     lattice.loads      = footprintsAt(grid, shape, [](const ChartPoint& place) { return place; });
-    const int reach    = homogeneous.foundation > 0 && !wholeObject ? kRungs : 0;
+    const int reach    = homogeneous.foundation > 0 ? kRungs : 0;
     lattice.rigidity   = homogeneous.rigidity(0, 0);
     lattice.foundation = homogeneous.foundation;
     std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));

@@ -93,9 +93,14 @@ double mostResponse(const Patch& patch)
     return most;
 }
 
+bool isOnSheet(const NodeField& covered, std::size_t node)
+{
+    return covered.values().empty() || covered.values()[node] > 0.5;
+}
+
 bool isOnSheet(const Patch& patch, std::size_t node)
 {
-    return patch.covered.values().empty() || patch.covered.values()[node] > 0.5;
+    return isOnSheet(patch.covered, node);
 }
 
 NodeField sheetRigidity(const Patch& patch)

@@ -208,6 +208,8 @@ struct GridNode {
 [[nodiscard]] GridNode nodeAtContact(const Patch& patch) noexcept;
 
 /// Returns whether a node lies on the sheet, not beyond a border of an object that the window spans.
+/// \param covered  share of the sheet at the nodes [1]; empty: it is everywhere
+[[nodiscard]] bool isOnSheet(const NodeField& covered, std::size_t node);
 [[nodiscard]] bool isOnSheet(const Patch& patch, std::size_t node);
 
 /// Returns the rigidity of the sheet at the nodes [N m], also beyond a border, where the plate has next to none.

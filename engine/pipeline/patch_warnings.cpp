@@ -214,7 +214,7 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, bool mayBe
         return result.push_back(
             "the deflection of " + formatQuantity(deepest, "m") + " exceeds twice the thickness (" +
             formatQuantity(most, "m") + "), to which the law of large deflections is trusted; press with less than " +
-            formatQuantity(patch.large->forceAt(most / (patch.large->tangent.front() * mostResponse(patch))), "N"));
+            formatQuantity(forceToDent(patch, most / (patch.large->tangent.front() * mostResponse(patch))), "N"));
     result.push_back("the deflection of " + formatQuantity(deepest, "m") + " exceeds half the thickness (" +
                      formatQuantity(most, "m") + "): Kirchhoff plate theory does not hold here; press with less than " +
                      formatQuantity(patch.stiffening > 0 ? law.force(less / patch.feltStiffness) : less, "N") +
@@ -228,7 +228,7 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, bool mayBe
 double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material, double curvature)
 {
     const double h = patch.thickness, nu = material.poissonRatio;
-    const double D    = geometricMean(patch.plate.rigidity.values());
+    const double D    = geometricMean(sheetRigidity(patch).values());
     const double wave = 4 * std::pow(std::numbers::pi / bentSize(patch), 4);
     return 12 * (1 - nu * nu) * D * curvature * curvature / (h * h) / (wave * D + settings.foundation);
 }

@@ -51,4 +51,10 @@ Press pressOf(const Patch& patch, const Material& material, double force) noexce
     return press;
 }
 
+double forceToDent(const Patch& patch, double dent) noexcept
+{
+    const double plate = patch.large->forceAt(dent); // [N]
+    return patch.stiffening > 0 ? depthLawOf(patch).force(dent + plate * restOf(patch)) : plate;
+}
+
 } // namespace palp

@@ -25,4 +25,9 @@ struct Press {
 /// \pre patch.deformed()
 [[nodiscard]] Press pressOf(const Patch& patch, const Material& material, double force) noexcept;
 
+/// Returns the force at which pressOf() has a dent, by the law of large deflections [N].
+/// \param dent  of the plate under the fingertip's mean [m], at most that law's reach
+/// \pre patch.large
+[[nodiscard]] double forceToDent(const Patch& patch, double dent) noexcept;
+
 } // namespace palp

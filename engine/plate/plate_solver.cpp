@@ -1,5 +1,4 @@
 #include "engine/plate/plate_solver.h"
-#include "engine/plate/curved_bending.h"
 
 #include <algorithm>
 #include <chrono>
@@ -16,6 +15,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
+#include "engine/plate/curved_bending.h"
 #include "engine/plate/detail/hard_plates.h"
 #include "engine/plate/detail/memory_shortage.h"
 #include "engine/plate/detail/rigidity_unit.h"
@@ -642,15 +642,15 @@ PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double toleranc
     return host();
 }
 
-template <class Answer, class Solve>
-std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solve& solve,
-                                               std::size_t footprints)
+template <class Answer, class Solve, class Refer>
+Answer PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solve& solve, const Refer& refer,
+                                std::size_t footprints)
 {
-    if (!processor_) return std::nullopt;
+    if (!processor_) return refer();
     const bool orByReference = fitsReference(plate.grid);
     if (const std::string* why = orByReference ? learned_->hard.knownBecause(plate, tolerance) : nullptr) {
         note_ = *why;
-        return std::nullopt;
+        return refer();
     }
     std::optional<Answer> answer;
     std::exception_ptr    broken;
@@ -662,7 +662,7 @@ std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolera
             answer = solve(*by);
             if (!last) learned_->shortage.fitted(plate.grid.nodes());
             const SolveReport& report = reportOf(*answer);
-            if (report.converged) return answer;
+            if (report.converged) return std::move(*answer);
             note_ = stoppedAt(report);
             sure  = last || by->hasDoubles();
         } catch (const compute::ProcessorOutOfMemory& error) {
@@ -678,12 +678,22 @@ std::optional<Answer> PlateSolver::byMultigrid(const Plate& plate, double tolera
         }
         by = sure ? nullptr : &host();
     }
-    if (orByReference) {
-        if (answer) learned_->hard.remember(plate, tolerance, note_);
-        return std::nullopt;
+    if (!answer) {
+        if (orByReference) return refer();
+        std::rethrow_exception(broken);
     }
-    if (!answer) std::rethrow_exception(broken);
-    return answer;
+    if (!orByReference) return std::move(*answer);
+    // Where rounding spoils a factorisation, as on hardly any foundation, what multigrid has reached may be nearer.
+    std::optional<Answer> exact;
+    try {
+        exact = refer();
+    } catch (const Error&) {
+        return std::move(*answer);
+    }
+    const double left = reportOf(*answer).errorEstimate.value_or(std::numeric_limits<double>::infinity());
+    if (!reportOf(*exact).converged && reportOf(*exact).errorEstimate.value_or(0) > left) return std::move(*answer);
+    learned_->hard.remember(plate, tolerance, note_);
+    return std::move(*exact);
 }
 
 void PlateSolver::takeHost()
@@ -727,11 +737,11 @@ std::vector<PlateSolution> PlateSolver::solveAll(const Plate& plate, std::span<c
 {
     PALP_EXPECT(!nodalForces.empty(), "there is no load to solve for");
     using Answer = std::vector<PlateSolution>;
-    auto answer =
-        byMultigrid<Answer>(plate, tolerance, [&](Multigrid& by) { return by.solve(plate, nodalForces, tolerance); });
-    if (!answer) answer = byReference(plate, nodalForces, tolerance);
-    noteSolvedBy(answer->front().report.solver);
-    return std::move(*answer);
+    auto answer  = byMultigrid<Answer>(
+        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, nodalForces, tolerance); },
+        [&] { return byReference(plate, nodalForces, tolerance); });
+    noteSolvedBy(answer.front().report.solver);
+    return answer;
 }
 
 FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<const Footprint> loads, std::size_t whole,
@@ -739,10 +749,10 @@ FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<con
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     auto answer = byMultigrid<FootprintSolution>(
-        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance, drawn); }, loads.size());
-    if (!answer) answer = byReference(plate, loads, whole, tolerance);
-    noteSolvedBy(answer->whole.report.solver);
-    return std::move(*answer);
+        plate, tolerance, [&](Multigrid& by) { return by.solve(plate, loads, whole, tolerance, drawn); },
+        [&] { return byReference(plate, loads, whole, tolerance); }, loads.size());
+    noteSolvedBy(answer.whole.report.solver);
+    return answer;
 }
 
 FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
@@ -756,6 +766,8 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
         if (processor_) note_ = stoppedAt(solution.whole.report);
         solution = byReference(shell, loads, whole, tolerance);
     }
+    // As DirectShell does: the void's own deflection is nothing that stretches a sheet.
+    goOnBeyondSheet(solution.whole.deflection, shell);
     noteSolvedBy(solution.whole.report.solver);
     return solution;
 }

@@ -154,12 +154,12 @@ private:
     [[nodiscard]] Multigrid&                 host(); ///< the host's multigrid, which takes over; made when first needed
     [[nodiscard]] Multigrid&                 bestFor(const Plate& plate, double tolerance, std::size_t footprints);
 
-    /// Calls solve(multigrid) on the processor and, where that fails, on the host.
+    /// Calls solve(multigrid) on the processor and, where that fails, on the host; and refer(), the reference, where
+    /// that fails too or is known to. Of two answers that are not good enough it returns the better one.
     /// \param footprints  that are solved for together
-    /// \return nothing if the reference should solve the plate
-    template <class Answer, class Solve>
-    [[nodiscard]] std::optional<Answer> byMultigrid(const Plate& plate, double tolerance, const Solve& solve,
-                                                    std::size_t footprints = 0);
+    template <class Answer, class Solve, class Refer>
+    [[nodiscard]] Answer byMultigrid(const Plate& plate, double tolerance, const Solve& solve, const Refer& refer,
+                                     std::size_t footprints = 0);
 
     void takeHost();                               ///< for good
     void loseProcessor(const std::exception& why); ///< for good: the host is the processor then

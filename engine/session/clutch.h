@@ -4,8 +4,15 @@
 #include <glm/vec3.hpp>
 
 #include "device/haptic_device.h"
+#include "engine/session/scene.h"
 
 namespace palp {
+
+/// Returns the bit of HapticState::buttons that is a scene's clutch; 0: it has none.
+[[nodiscard]] inline std::uint32_t clutchBit(const Scene& scene) noexcept
+{
+    return scene.clutchButton > 0 ? 1U << unsigned(scene.clutchButton - 1) : 0U;
+}
 
 /// Holds the tool of the scene where it is while its user carries the device back to the middle of the workspace, as
 /// one lifts a mouse and puts it down elsewhere. No force flows meanwhile; afterwards it engages anew.

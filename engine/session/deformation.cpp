@@ -56,8 +56,8 @@ void Deformation::repaint(const SoftObject& object)
 {
     PALP_EXPECT(object.size() == object_->size(), "a painted cloud has the points that it had before");
     object_ = &object;
-    kept_.reset();
     middle_.reset();
+    if (kept_) kept_->isOfObject = false;
 }
 
 DeformationAnswer Deformation::solve(const Touch& touch, double lead)
@@ -111,7 +111,8 @@ bool Deformation::isKeptFor(const Contact& contact) const
 {
     // Of the reach, so that the other half is left while the next is solved; cosine of 60 degrees [1].
     constexpr double kPart = 0.5, kAlike = 0.5;
-    if (!kept_ || glm::dot(contact.outward, kept_->update.table.chart.frame.normal) < kAlike) return false;
+    if (!kept_ || !kept_->isOfObject || glm::dot(contact.outward, kept_->update.table.chart.frame.normal) < kAlike)
+        return false;
     const ComplianceTable& table = kept_->update.table;
     const auto             place = table.chart.project(contact.point);
     if (!place || !(std::max(std::abs(place->x), std::abs(place->z)) < kPart * table.reach())) return false;
@@ -122,12 +123,14 @@ bool Deformation::isKeptFor(const Contact& contact) const
 DeformationAnswer Deformation::keptFor(const Touch& touch)
 {
     const std::shared_ptr<PatchUpdate>& slot = freeSlot();
+    kept_->update.table.time                 = touch.time; // it is as good as a new one, also where it ends()
     *slot                                    = kept_->update;
     slot->table.sequence                     = touch.sequence;
-    slot->table.time                         = touch.time;
     Patch patch                              = kept_->patch;
     patch.times                              = {};
-    return {slot, std::move(patch), {}};
+    DeformationAnswer answer{slot, std::move(patch), {}};
+    answer.isSolved = false;
+    return answer;
 }
 
 /// Returns the last answer as one that lasts no longer: there is none for what is touched now. It keeps its time. Null
@@ -139,6 +142,7 @@ std::shared_ptr<PatchUpdate> Deformation::ended(const Touch& touch)
     *slot                                    = kept_->update;
     slot->table.sequence                     = touch.sequence;
     slot->table.lasts                        = false;
+    slot->table.ended                        = true;
     kept_.reset();
     return slot;
 }
@@ -156,7 +160,8 @@ DeformationAnswer Deformation::answerOf(Patch patch, const Touch& touch, const s
     update.iterations     = patch.report.iterations.value_or(0);
     update.shape          = depthShapeOf(patch);
     update.table.lasts    = settings_.windowOf == WindowOf::object;
-    if (update.table.lasts) kept_ = {update, patch};
+    update.table.ended    = false;
+    if (update.table.lasts) kept_ = {update, patch, true};
     return {slot, std::move(patch), {}};
 }
 
@@ -169,7 +174,7 @@ std::optional<DeformationAnswer> Deformation::solveInWindows(const Contact& cont
     const Patch* const middle = middleFor(contact);
     if (middle)
         if (auto answer = moved(*middle, contact, touch)) return answer;
-    const bool hasOwn = kept_ && !(middle && kept_->patch.chart.origin == middle->chart.origin);
+    const bool hasOwn = kept_ && kept_->isOfObject && !(middle && kept_->patch.chart.origin == middle->chart.origin);
     return hasOwn ? moved(kept_->patch, contact, touch) : std::nullopt;
 }
 
@@ -216,7 +221,7 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         Patch patch = deformWithTable(*object_, contact, settings_, lattice_, solver_, frame_, slot->table);
         if (!patch.deformed()) return {{}, {}, "the points around the contact determine no surface"};
         return answerOf(std::move(patch), touch, slot);
-    } catch (const Error& error) { // the window is off the object, or the plate has no solution there
+    } catch (const std::exception& error) { // the window is off the object, the plate has no solution, or memory ends
         return {{}, {}, error.what()};
     }
 }

@@ -22,6 +22,7 @@ struct DeformationAnswer {
     std::string                  takeover{}; ///< who solves plates now, and why; empty: who did before
     /// Where there is no update although the last one lasts: that one, which does so no longer. Else null.
     std::shared_ptr<PatchUpdate> ends{};
+    bool                         isSolved = true; ///< false: the last answer holds here too, and took no time
 };
 
 /// Turns a touch into an answer. It may take long, and throw. `lead` is the time [s] from the touch to the middle of
@@ -102,6 +103,7 @@ private:
     struct Kept {
         PatchUpdate update;
         Patch       patch;
+        bool        isOfObject = true; ///< as it is painted now
     };
     std::optional<Kept> kept_; ///< the last answer, where the window spans the object
     /// The middle of an object that the window spans, with a window for each side from which it was touched.

@@ -135,7 +135,8 @@ std::size_t columnIn(std::string_view header, std::string_view name)
 /// Where a header has what a file may add to time and place; 0 where it has it not.
 struct FurtherColumns {
     std::size_t                buttons = 0;
-    std::array<std::size_t, 4> turn{}; ///< x, y, z, w
+    std::size_t                device  = 0; ///< of an exported recording, whose upper half is the buttons
+    std::array<std::size_t, 4> turn{};      ///< x, y, z, w
 
     [[nodiscard]] bool turns() const { return turn[0] > 0; }
 };
@@ -144,6 +145,8 @@ FurtherColumns furtherIn(std::string_view header, const std::string& where)
 {
     FurtherColumns found;
     found.buttons = columnIn(header, "buttons");
+    // A column "device" is that of a session beside its others only.
+    if (found.buttons == 0 && columnIn(header, "missed") > 0) found.device = columnIn(header, "device");
     for (std::size_t k = 0; k < 4; ++k) found.turn[k] = columnIn(header, std::string("orientation_") + "xyzw"[k]);
     const auto there = 4 - std::ranges::count(found.turn, 0U);
     if (there != 0 && there != 4)
@@ -151,14 +154,18 @@ FurtherColumns furtherIn(std::string_view header, const std::string& where)
     return found;
 }
 
-std::uint32_t buttonsOf(std::string_view word, const std::string& where)
+std::uint32_t buttonsOf(std::string_view line, const FurtherColumns& columns, const std::string& where)
 {
     constexpr std::uint64_t kMost = 0xFFFF; // as many as a session records
+    const bool              own   = columns.buttons > 0;
+    const auto              word  = wordAt(line, own ? columns.buttons : columns.device);
     const auto              bits  = parseCount(word);
-    if (!bits || *bits > kMost)
-        throw Error(where + ": expected buttons as a whole number from 0 to 65535, one bit each, found " +
+    if (!bits || *bits > (own ? kMost : kMost << 16U | kMost))
+        throw Error(where +
+                    (own ? ": expected buttons as a whole number from 0 to 65535, one bit each, found "
+                         : ": expected the bits of an exported column device, a whole number below 2^32, found ") +
                     inQuotes(word));
-    return std::uint32_t(*bits);
+    return std::uint32_t(own ? *bits : *bits >> 16U);
 }
 
 glm::dquat turnOf(std::string_view line, const std::array<std::size_t, 4>& columns, const std::string& where)
@@ -396,7 +403,7 @@ HandPath parseHand(std::istream& in, const std::string& name)
             take(comment, commentWhere);
         demandColumns(words, columns, where);
         HandPose waypoint = waypointOf(words.first, inSi, where);
-        if (further.buttons > 0) waypoint.buttons = buttonsOf(wordAt(rest, further.buttons), where);
+        if (further.buttons > 0 || further.device > 0) waypoint.buttons = buttonsOf(rest, further, where);
         if (further.turns()) waypoint.orientation = turnOf(rest, further.turn, where);
         checked.add(waypoint, where);
     }

@@ -73,8 +73,9 @@ private:
 };
 
 /// Reads a hand from a file of rows time [s], x, y, z [m]. Further columns are skipped where a header line has them
-/// too, so that the table of a recorded session is a hand; in text, one that is called "buttons" is read: a whole
-/// number, whose bit i is set if button i is down; and so are orientation_x, _y, _z and _w, a quaternion of the grip.
+/// too, so that the table of a recorded session is a hand, with its buttons; in text, one that is called "buttons" is
+/// read: a whole number, whose bit i is set if button i is down; and so are orientation_x, _y, _z and _w, a quaternion
+/// of the grip.
 ///
 /// .npy: an array of shape (n, 4) or wider. Any other extension: text, one waypoint a line, numbers between commas,
 /// semicolons, blanks or tabs; lines that start with '#' are comments; the first name of a header line begins with "t",

@@ -147,7 +147,7 @@ std::string now()
     return {text, std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc)};
 }
 
-nlohmann::ordered_json describe(const SessionInfo& info)
+nlohmann::ordered_json describe(const SessionInfo& info, const std::filesystem::path& folder)
 {
     nlohmann::ordered_json columns = nlohmann::ordered_json::object();
     for (const SessionColumn& column : sessionColumns())
@@ -177,7 +177,7 @@ nlohmann::ordered_json describe(const SessionInfo& info)
             {"solver", info.solver},
             {"cloud", info.cloud},
             {"hand", std::move(hand)},
-            {"scene", nlohmann::ordered_json::parse(sceneJson(info.scene))},
+            {"scene", nlohmann::ordered_json::parse(sceneJson(info.scene, folder))},
             {"origins", std::move(origins)},
             {"columns", std::move(columns)},
             {"finished", false}};
@@ -206,7 +206,7 @@ void makeFresh(const std::filesystem::path& folder)
 
 struct Recording::Impl {
     Impl(const std::filesystem::path& place, const SessionInfo& info, Complain hear)
-        : folder(place), description(describe(info)), complain(std::move(hear)), ring(kRing), files(place)
+        : folder(place), description(describe(info, place)), complain(std::move(hear)), ring(kRing), files(place)
     {
         writeDescription(folder, description);
         writer = quietThread([this] { work(); });

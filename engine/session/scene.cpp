@@ -354,16 +354,22 @@ Scene readScene(const std::filesystem::path& file, const SceneOverrides& overrid
                       file.string(), file.parent_path(), overrides);
 }
 
-std::string sceneJson(const Scene& scene)
+std::string sceneJson(const Scene& scene, const std::filesystem::path& folder)
 {
     Scene whole = scene;
-    if (!isSample(whole) && !whole.cloud.empty()) whole.cloud = std::filesystem::absolute(whole.cloud).string();
+    if (!isSample(whole) && !whole.cloud.empty()) {
+        const std::filesystem::path cloud   = std::filesystem::absolute(whole.cloud);
+        const std::filesystem::path there   = std::filesystem::absolute(folder / cloud.filename());
+        const bool                  isThere = !folder.empty() && cloud.lexically_normal() == there.lexically_normal();
+        whole.cloud                         = (isThere ? cloud.filename() : cloud).string();
+    }
     whole.stiffness = lawWithFileIn(whole.stiffness, std::filesystem::current_path());
     for (std::string* law : {&whole.below.volume, &whole.below.foundation})
         *law = lawWithFileIn(*law, std::filesystem::current_path());
     std::string text;
+    const bool  isSpring = scene.material.stiffening == 0 && !statesStiffening(scene);
     for (const SceneKey* key : sceneKeysWith(scene.toolKeys))
-        if (const std::string value = key->write(whole); !value.empty())
+        if (const std::string value = key->write(whole); !value.empty() && !(isSpring && key->name == "stiffening"))
             text += (text.empty() ? "{" : ",\n ") + quotedJson(key->name) + ": " + value;
     return text + "}";
 }

@@ -153,8 +153,11 @@ struct SceneOverrides {
 [[nodiscard]] Scene parseScene(std::string_view text, const std::string& name, const std::filesystem::path& folder,
                                const SceneOverrides& overrides = {});
 
-/// Returns the scene as one JSON object that parseScene() reads back to the same values; a file's path is absolute.
-[[nodiscard]] std::string sceneJson(const Scene& scene);
+/// Returns the scene as one JSON object that parseScene() reads back to the same values. A stiffening that nobody stated
+/// is left out, because a stated one counts in place of the cloud's.
+/// \param folder  that the text is stored in: the name of a cloud in it is relative to it, else a file's path is
+///                absolute
+[[nodiscard]] std::string sceneJson(const Scene& scene, const std::filesystem::path& folder = {});
 
 enum class ConfigFormat { text, json };
 

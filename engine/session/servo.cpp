@@ -36,6 +36,15 @@ GovernorSettings governorOf(const Scene& scene, const HapticDeviceInfo& limits)
     return settings;
 }
 
+constexpr double kFading = 30e-3; ///< [s] the governor takes 20 ms of it; the law that answers lasts until then
+
+/// Returns how long a contact may last without an answer of the plate for it [s]; see ForceHalf::tableOverdue().
+double longestWithoutTable(double patchPeriod)
+{
+    constexpr double kOldest = 0.25, kPeriods = 3; // [s] a hand moves 5 cm in it; [1]
+    return std::max(kOldest, kPeriods * patchPeriod);
+}
+
 } // namespace
 
 ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from)
@@ -73,7 +82,8 @@ double AnswerPeriod::add(std::uint64_t sequence, double time) noexcept
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const HomogeneousLaw* first)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), linear_(scene.material.isLinear()),
       ofScene_(scene.material.stiffening), stiffening_(ofScene_), patchPeriod_(1 / scene.deformationRate),
-      scale_(scene.workspaceScale), compliance_(scene.complianceLaw, first),
+      scale_(scene.workspaceScale),
+      compliance_(scene.complianceLaw, first, longestWithoutTable(1 / scene.deformationRate) + kFading),
       relaxing_(scene.material.relaxation, scene.patch.footprintRadius), governor_(governorOf(scene, limits))
 {
 }
@@ -239,16 +249,16 @@ void ForceHalf::leanOn(const ProxyContact& held, const Hand& hand, const WantedF
 double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUpdate* newest,
                                const std::optional<LocalCompliance>& handed) noexcept
 {
-    constexpr double kOldest = 0.25, kPeriods = 3; // [s] a hand moves 5 cm in it; [1]
     if (newest && newest->table.sequence != answered_ && newest->table.usable()) {
         answered_ = newest->table.sequence;
-        asked_    = now.time - newest->table.time;
+        // One that ended was made for another place than that of a contact that began without one.
+        if (!(newest->table.ended && handed && handed->guessed)) asked_ = now.time - newest->table.time;
     }
     const bool tableInUse = handed && !handed->guessed;
     if ((touching && !touched_ && !tableInUse) || (handed && lastsStill(*handed))) asked_ = 0;
     touched_ = touching;
     if (touching) asked_ += now.dt;
-    return touching ? asked_ - std::max(kOldest, kPeriods * patchPeriod_) : 0;
+    return touching ? asked_ - longestWithoutTable(patchPeriod_) : 0;
 }
 
 TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyContact& held,

@@ -1,4 +1,5 @@
 #include "engine/session/session_hand.h"
+#include "engine/session/clutch.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -89,7 +90,7 @@ void makeDevice(SessionHand& hand, const HandChoice& choice, const Scene& scene,
     hand.frame = frameOf(hand, scene, object);
     if (hand.isHeldByPerson()) hand.from = freePlace(scene, object);
     hand.frame.scale  = scene.workspaceScale;
-    hand.frame.clutch = scene.clutchButton > 0 ? 1U << unsigned(scene.clutchButton - 1) : 0U;
+    hand.frame.clutch = clutchBit(scene);
     DeviceRequest request{.hid      = *hand.hid,
                           .options  = choice.options,
                           .path     = devicePath(choice.hand),

@@ -10,6 +10,7 @@
 
 #include "device/velocity_filter.h"
 #include "engine/core/real_time.h"
+#include "engine/session/clutch.h"
 #include "engine/session/detail/deformation_loop.h"
 
 namespace palp {
@@ -34,33 +35,53 @@ HapticDeviceInfo withUnknowns(HapticDeviceInfo device)
     return device;
 }
 
+/// Gives the tool its place in place of the hand's, which differ by what the hand went while the clutch was held.
+void holdByClutch(Hand& hand, Clutch& clutch) noexcept
+{
+    HapticState state;
+    state.position = hand.position;
+    state.velocity = hand.velocity;
+    state.buttons  = hand.buttons;
+    state.clutched = hand.clutched;
+    state          = clutch.step(state, false);
+    hand.position  = state.position;
+    hand.velocity  = state.velocity;
+    hand.buttons   = state.buttons;
+    hand.clutched  = clutch.isHeld();
+}
+
 } // namespace
 
 struct SteppedSession::Impl {
-    SoftObject               object;
-    Scene                    scene;
-    HapticDeviceInfo         device;
-    Deformation              deformation;
-    std::mutex               told; ///< of `takeover`
-    std::string              takeover;
-    Servo                    servo;
-    DeformationLoop          loop;
-    std::optional<Recording> recording;
-    TickRecord               last{};
-    Hand                     hand{};       ///< the last good one
-    VelocityFilter           moved{15e-3}; ///< [s] as drivers of devices take it
-    double                   time = 0;     ///< [s] of the last tick
-    SleepWatch               sleep;
-    bool                     begun  = false;
-    bool                     zeroed = false; ///< a bad tick gave no force, until the governor gives none either
-    std::uint64_t            steps  = 0;
-    std::atomic<bool>        over   = false;
-    std::thread              thread;
+    SoftObject                               object;
+    const std::shared_ptr<const LoadedCloud> own; ///< null: the scene says where the points are
+    Scene                                    scene;
+    HapticDeviceInfo                         device;
+    Deformation                              deformation;
+    std::mutex                               told; ///< of `takeover`
+    std::string                              takeover;
+    Servo                                    servo;
+    DeformationLoop                          loop;
+    std::optional<Recording>                 recording;
+    TickRecord                               last{};
+    Hand                                     hand{}; ///< the last good one
+    Clutch                                   clutch;
+    VelocityFilter                           moved{15e-3}; ///< [s] as drivers of devices take it
+    double                                   time = 0;     ///< [s] of the last tick
+    SleepWatch                               sleep;
+    bool                                     begun = false;
+    bool              zeroed = false; ///< a bad tick gave no force, until the governor gives none either
+    std::uint64_t     steps  = 0;
+    std::atomic<bool> over   = false;
+    std::thread       thread;
 
-    Impl(SoftObject touched, const Scene& given, const HapticDeviceInfo& hold)
-        : object(std::move(touched)), scene(given), device(withUnknowns(hold)), deformation(object, scene),
-          takeover(deformation.plateSolver().takeoverSince(0)), servo(object, scene, device, deformation.firstLaw()),
-          loop([this](const Touch& touch, double lead) { return solved(touch, lead); }, scene.deformationRate)
+    Impl(SoftObject touched, const Scene& given, const HapticDeviceInfo& hold,
+         std::shared_ptr<const LoadedCloud> points)
+        : object(std::move(touched)), own(std::move(points)), scene(given), device(withUnknowns(hold)),
+          deformation(object, scene), takeover(deformation.plateSolver().takeoverSince(0)),
+          servo(object, scene, device, deformation.firstLaw()),
+          loop([this](const Touch& touch, double lead) { return solved(touch, lead); }, scene.deformationRate),
+          clutch(clutchBit(scene))
     {
         thread = std::thread([this] { loop.run(over); });
     }
@@ -82,8 +103,9 @@ struct SteppedSession::Impl {
     }
 };
 
-SteppedSession::SteppedSession(SoftObject object, const Scene& scene, const HapticDeviceInfo& device)
-    : impl_(std::make_unique<Impl>(std::move(object), scene, device))
+SteppedSession::SteppedSession(SoftObject object, const Scene& scene, const HapticDeviceInfo& device,
+                               std::shared_ptr<const LoadedCloud> own)
+    : impl_(std::make_unique<Impl>(std::move(object), scene, device, std::move(own)))
 {
 }
 
@@ -109,8 +131,9 @@ const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
     if (!good) hand.device = DeviceFault::kinematics;
     hand.answerTime = s.time;
     hand.sequence   = s.steps;
-    s.last          = s.servo.tick({s.time, dt}, hand, s.loop.newest(s.servo.tableInUse()));
-    s.zeroed        = !good || (s.zeroed && s.last.force != glm::dvec3(0));
+    holdByClutch(hand, s.clutch);
+    s.last   = s.servo.tick({s.time, dt}, hand, s.loop.newest(s.servo.tableInUse()));
+    s.zeroed = !good || (s.zeroed && s.last.force != glm::dvec3(0));
     if (s.zeroed) s.last.force = {};
     s.loop.touch.draft() = s.servo.touch();
     s.loop.touch.publish();
@@ -156,7 +179,10 @@ void SteppedSession::record(const std::filesystem::path& folder, const std::stri
     impl_->recording.emplace(folder, info);
     if (!nameless) return;
     try {
-        writeCloud(info.scene.cloud, impl_->object.cloud(), {}, {.faces = impl_->object.faces()});
+        const std::optional<FieldsBeside> beside =
+            impl_->own ? std::optional<FieldsBeside>(std::in_place, *impl_->own) : std::nullopt;
+        writeCloud(info.scene.cloud, impl_->object.cloud(), beside ? beside->all() : std::span<const NamedField>(),
+                   {.faces = impl_->object.faces()});
     } catch (...) {
         impl_->recording.reset();
         throw;

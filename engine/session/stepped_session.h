@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/cloud/point_cloud_io.h"
 #include "engine/session/deformation.h"
 #include "engine/session/recording.h"
 #include "engine/session/scene.h"
@@ -19,8 +20,10 @@ class SteppedSession {
 public:
     /// Opens the plate solver and solves the homogeneous window, some tenths of a second, then starts the thread.
     /// \param device  what holds the hand, as far as it is known: it bounds stiffness and force
+    /// \param own     what is said of points that the scene does not name, for record(); null: nothing but the object
     /// \throws Error as Deformation does
-    SteppedSession(SoftObject object, const Scene& scene, const HapticDeviceInfo& device = {});
+    SteppedSession(SoftObject object, const Scene& scene, const HapticDeviceInfo& device = {},
+                   std::shared_ptr<const LoadedCloud> own = nullptr);
     ~SteppedSession(); ///< ends the thread and the recording
     SteppedSession(const SteppedSession&)            = delete;
     SteppedSession& operator=(const SteppedSession&) = delete;

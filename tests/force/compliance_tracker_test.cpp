@@ -268,6 +268,38 @@ TEST(ComplianceTracker, NoTableForAQuarterOfASecondIsNoAnswer)
     EXPECT_FALSE(tracker.tick({{5e-3, 0, 0}, 1, kTick, &none}).has_value()) << "no site is near";
 }
 
+/// What was touched before has a table, and what is touched now has none: the one that ended is of another place.
+TEST(ComplianceTracker, ATableThatEndedIsNotFeltWhereTheHomogeneousLawAnswers)
+{
+    const HomogeneousLaw law = lawAtTheOrigin();
+    for (const bool began : {true, false}) { // beyond the reach of that table, or on it
+        Servo servo;
+        servo.handOver     = ComplianceTracker(ComplianceLaw::table, &law);
+        auto table         = tableOf(1, -6);
+        table.chart.origin = {began ? 20e-3 : 0, 0, 0};
+        servo.touching     = false;
+        (void)servo.tick(table);
+        servo.touching = true;
+        (void)servo.tick(table);
+        table.sequence = 2;
+        table.ended    = true;
+        for (int n = 0; n < 100; ++n) EXPECT_NEAR(servo.tick(table), began ? -5 : -6, 1e-12) << n;
+        auto   own  = tableOf(3, -5.5);
+        double last = 0;
+        for (int n = 0; n < 100; ++n) last = servo.tick(own);
+        EXPECT_NEAR(last, -5.5, 1e-12) << "one of its own is";
+    }
+}
+
+TEST(ComplianceTracker, TheHomogeneousLawAnswersAsLongAsASlowThreadMayTake)
+{
+    const HomogeneousLaw  law = lawAtTheOrigin();
+    ComplianceTracker     tracker(ComplianceLaw::table, &law, 1.5);
+    const ComplianceTable none;
+    for (int n = 0; n < 1500; ++n) EXPECT_TRUE(tracker.tick({{}, n * kTick, kTick, &none})) << n;
+    EXPECT_FALSE(tracker.tick({{}, 1.51, 10 * kTick, &none}));
+}
+
 TEST(ComplianceTracker, WhatIsNotUsableIsNotTaken)
 {
     Servo servo;

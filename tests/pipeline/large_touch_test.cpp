@@ -72,6 +72,13 @@ TEST(LargeTouch, SaysWhichForceStaysWithinItsLaw)
     };
     EXPECT_TRUE(said(1.01 * most));
     EXPECT_FALSE(said(0.99 * most));
+
+    Patch stiffens      = patch;
+    stiffens.stiffening = 200; // [1/m]
+    const double more   = forceToDent(stiffens, mean);
+    EXPECT_GT(more, 1.01 * most);
+    EXPECT_NEAR(pressOf(stiffens, kSkin, more).load * mostResponse(stiffens) / patch.large->reach(), 1, 1e-3)
+        << "what a shape of some steps interpolates";
 }
 
 TEST(LargeTouch, OffAndOnAgreeOnEverythingLinear)

@@ -170,15 +170,26 @@ TEST(CurvedObjectDeformation, HasAWindowOfItsOwnWhereTheMiddleHasNone)
     Deformation deformation(object, scene);
     const auto  answer = deformation.solve(touchOn(0.027, 0, 2 * 0.027 * 0.027, 1), 0);
     ASSERT_TRUE(answer.update) << answer.why;
+    EXPECT_TRUE(answer.isSolved);
     EXPECT_LT(glm::length(answer.patch->chart.origin - answer.patch->contact.point), 1e-5);
-    const auto loose = deformation.solve(touchOn(0, 0, 0, 2), 0);
+    const auto rests = deformation.solve(touchOn(0.027, 0, 2 * 0.027 * 0.027, 2), 0);
+    ASSERT_TRUE(rests.update);
+    EXPECT_FALSE(rests.isSolved) << "the last answer holds";
+    const auto loose = deformation.solve(touchOn(0, 0, 0, 3), 0);
     EXPECT_FALSE(loose.update);
     ASSERT_TRUE(loose.ends) << "what was felt before may not last";
     EXPECT_FALSE(loose.ends->table.lasts);
-    EXPECT_EQ(loose.ends->table.time, 1);
-    EXPECT_EQ(loose.ends->table.sequence, 2U);
-    EXPECT_FALSE(deformation.solve(touchOn(0, 0, 0, 3), 0).ends) << "it is told once";
+    EXPECT_TRUE(loose.ends->table.ended);
+    EXPECT_EQ(loose.ends->table.time, 2) << "it was as good as new until then, and is felt for a quarter of a second";
+    EXPECT_EQ(loose.ends->table.sequence, 3U);
+    EXPECT_FALSE(deformation.solve(touchOn(0, 0, 0, 4), 0).ends) << "it is told once";
     EXPECT_NE(loose.why.find("hold more of it"), std::string::npos) << loose.why;
+
+    const auto again = deformation.solve(touchOn(0.027, 0, 2 * 0.027 * 0.027, 5), 0);
+    ASSERT_TRUE(again.update);
+    EXPECT_FALSE(again.update->table.ended) << "its memory may have been that of one that did";
+    deformation.repaint(object);
+    EXPECT_TRUE(deformation.solve(touchOn(0, 0, 0, 6), 0).ends) << "paint does not make it last";
 }
 
 /// The loop hands on what ends a table that lasts, though it is no answer.

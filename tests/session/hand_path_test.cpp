@@ -85,6 +85,16 @@ TEST(HandPath, AHeaderInAComment)
         EXPECT_EQ(parsed(said + std::string("0,1,2,3\n500,2,2,3\n")).duration(), 500) << said;
 }
 
+/// The table of a session has the buttons in the upper half of `device`; a column of that name elsewhere is any text.
+TEST(HandPath, AnExportedTableHasItsButtons)
+{
+    const HandPath hand = parsed("time,hip_x,hip_y,hip_z,missed,device\n0,1,2,3,0,768\n0.5,1,2,3,0,131840\n");
+    EXPECT_EQ(hand.buttons(0.2), 0U);
+    EXPECT_EQ(hand.buttons(0.6), 2U);
+    EXPECT_EQ(parsed("time,x,y,z,device\n0,1,2,3,falcon\n0.5,1,2,3,131840\n").buttons(0.6), 0U);
+    EXPECT_NE(refusal("time,hip_x,hip_y,hip_z,missed,device\n0,1,2,3,0,-1\n").find("column device"), std::string::npos);
+}
+
 TEST(HandPath, FingerprintsTellHandsApart)
 {
     const std::string rows = "0,0,0,0\n1,0,0,";

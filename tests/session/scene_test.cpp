@@ -214,6 +214,27 @@ TEST(Scene, AMaterialSetsWhatIsKnownOfItAndOtherKeysWin)
     EXPECT_TRUE(paper.material.isLinear()) << "a flag's preset wins over the file's material";
 }
 
+/// A stated stiffening counts in place of the cloud's: what nobody stated may not be stated where it is written.
+TEST(Scene, AStiffeningThatNobodyStatedIsNotWritten)
+{
+    const Scene spring = parsed(R"({"cloud": "sample:sheet"})"),
+                zero   = parsed(R"({"cloud": "sample:sheet", "stiffening": 0})");
+    EXPECT_FALSE(statesStiffening(parsed(sceneJson(spring))));
+    EXPECT_TRUE(statesStiffening(parsed(sceneJson(zero))));
+    EXPECT_EQ(sceneJson(parsed(sceneJson(spring))), sceneJson(spring));
+}
+
+TEST(Scene, AScenesCloudInAFolderIsRelativeToIt)
+{
+    const TemporaryFolder folder;
+    (void)folder.write("cloud.csv", "x,y,z,stiffness\n0,0,0,1\n1,0,0,1\n");
+    Scene scene = parseScene(R"({"cloud": "cloud.csv"})", "s.json", folder.path());
+    EXPECT_NE(sceneJson(scene, folder.path()).find("\"cloud\": \"cloud.csv\""), std::string::npos);
+    EXPECT_NE(sceneJson(scene, folder.path() / "below").find((folder.path() / "cloud.csv").string()),
+              std::string::npos);
+    EXPECT_NE(sceneJson(scene).find((folder.path() / "cloud.csv").string()), std::string::npos);
+}
+
 TEST(Scene, WhatIsPrintedReadsBackToTheSameValues)
 {
     const Scene first = parsed(R"({"cloud": "sample:palm", "thickness": 0.1e-2, "edges": "x1=supported",

@@ -3,11 +3,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <memory>
 #include <string>
 
 #include <glm/vec3.hpp>
 
 #include "engine/capi/palpate.h"
+#include "engine/cloud/point_cloud_io.h"
 #include "engine/cloud/soft_object.h"
 #include "engine/core/contract.h"
 #include "engine/session/scene.h"
@@ -17,6 +19,8 @@
 struct palpate_object {
     palp::Scene      scene;
     palp::SoftObject object;
+    /// What a caller says of points of its own, to be recorded; null: the scene says where they are.
+    std::shared_ptr<const palp::LoadedCloud> own{};
 };
 
 namespace palp::capi {

@@ -23,8 +23,7 @@ NodeField unitLoad(const PlateGrid& grid, const PatchSettings& settings, const N
     NodeField load =
         footprintLoad(grid, 1, grid.sizeX() / 2 + place.x, grid.sizeZ() / 2 + place.z, settings.footprintRadius);
     if (covered.values().empty()) return load;
-    const Footprint whole(load);
-    return onSheet(whole, covered).load(grid);
+    return onPiece(Footprint(load), grid, covered).load(grid);
 }
 
 NodeField unitLoad(const Patch& patch, const PatchSettings& settings)
@@ -163,7 +162,7 @@ void pressDeeper(Patch& patch, const PatchSettings& settings, PlateSolver& solve
     const double     reach = kTrusted * patch.thickness;
     if (settings.forceLaw != ForceLaw::series)
         patch.linearBecause = std::string("the force law ") + name(settings.forceLaw) + " does not feel the plate";
-    else if (const auto why = whyUnsolvable(shell))
+    else if (const auto why = whyUnsolvable(GridPart(patch).of(shell)))
         patch.linearBecause = *why;
     else
         try {

@@ -9,6 +9,7 @@
 
 #include "engine/chart/coverage.h"
 #include "engine/core/extremes.h"
+#include "engine/pipeline/detail/node_pieces.h"
 #include "engine/pipeline/detail/thrust_fields.h"
 
 namespace palp {
@@ -43,28 +44,53 @@ double shareOf(double covered, double beyond)
     return beyond + (1 - beyond) * covered;
 }
 
+/// Calls visit(node) for the nodes around one, itself included.
+template <class Visit>
+void eachAround(const PlateGrid& grid, std::size_t node, const Visit& visit)
+{
+    const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
+    for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
+        for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
+            visit(std::size_t(a * grid.nodesZ() + b));
+}
+
+/// Adds to `is` the nodes of the sheet that hang together with one.
+void addPiece(std::vector<bool>& is, const PlateGrid& grid, const NodeField& covered, std::size_t node)
+{
+    std::vector<std::size_t> next;
+    const auto               reach = [&](std::size_t n) {
+        if (is[n] || !isOnSheet(covered, n)) return;
+        is[n] = true;
+        next.push_back(n);
+    };
+    reach(node);
+    while (!next.empty()) {
+        const std::size_t at = next.back();
+        next.pop_back();
+        eachAround(grid, at, reach);
+    }
+}
+
 /// Returns for each node whether it lies on the piece of the sheet that is touched: separate pieces hang together only
 /// by what is next to nothing.
 std::vector<bool> touchedPiece(const Patch& patch, const NodeField& load)
 {
-    const PlateGrid&         grid = patch.plate.grid;
-    std::vector<bool>        is(grid.nodes());
-    std::vector<std::size_t> next;
-    const auto               reach = [&](std::size_t node) {
-        if (is[node] || !isOnSheet(patch, node)) return;
-        is[node] = true;
-        next.push_back(node);
-    };
-    for (std::size_t n = 0; n < grid.nodes(); ++n)
-        if (load.values()[n] > 0) reach(n);
-    while (!next.empty()) {
-        const int at = int(next.back()), i = at / grid.nodesZ(), j = at % grid.nodesZ();
-        next.pop_back();
-        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
-            for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
-                reach(std::size_t(a * grid.nodesZ() + b));
-    }
+    std::vector<bool> is(patch.plate.grid.nodes());
+    for (std::size_t n = 0; n < is.size(); ++n)
+        if (load.values()[n] > 0) addPiece(is, patch.plate.grid, patch.covered, n);
     return is;
+}
+
+/// Returns the share of the sheet without its other pieces, and without what of these ends between two nodes.
+NodeField onlyPiece(const PlateGrid& grid, const NodeField& covered, const std::vector<bool>& piece)
+{
+    NodeField own(grid);
+    for (std::size_t n = 0; n < piece.size(); ++n) {
+        bool isOwn = piece[n];
+        if (!isOnSheet(covered, n)) eachAround(grid, n, [&](std::size_t other) { isOwn = isOwn || piece[other]; });
+        if (isOwn) own.values()[n] = covered.values()[n];
+    }
+    return own;
 }
 
 /// Returns how deep a node lies in what is not held, in the widths of the Gaussian that made its share of what is: the
@@ -342,15 +368,37 @@ Footprint onSheet(const Footprint& footprint, const NodeField& covered)
     return shareOnSheet(beside, covered) > kHardly ? still(cutToSheet(beside, covered)) : footprint;
 }
 
+Footprint onPiece(const Footprint& footprint, const PlateGrid& grid, const NodeField& covered)
+{
+    const Footprint whole = onSheet(footprint, covered);
+    const NodeField load  = whole.load(grid);
+    const auto parts = connected(grid, [&](std::size_t n) { return load.values()[n] > 0 && isOnSheet(covered, n); });
+    if (parts.size() < 2) return whole;
+    double            most = 0;
+    std::vector<bool> best, seen(grid.nodes());
+    for (const Nodes& part : parts) {
+        if (seen[part.front()]) continue; // it hangs together with an earlier one, around a slit
+        std::vector<bool> piece(grid.nodes());
+        addPiece(piece, grid, covered, part.front());
+        double sum = 0; // [N]
+        for (std::size_t n = 0; n < piece.size(); ++n) {
+            if (!piece[n]) continue;
+            seen[n] = true;
+            sum += load.values()[n];
+        }
+        if (!(sum > most)) continue;
+        most = sum;
+        best = std::move(piece);
+    }
+    return onSheet(footprint, onlyPiece(grid, covered, best));
+}
+
 FootprintLattice onSheet(const FootprintLattice& lattice, const Patch& patch)
 {
     FootprintLattice own     = lattice;
-    const Footprint& middle  = lattice.loads[lattice.loads.size() / 2];
-    const Footprint  touch   = onSheet(middle, patch.covered);
-    const auto       piece   = touchedPiece(patch, touch.load(patch.plate.grid));
-    NodeField        covered = patch.covered; // another piece may be held by nothing
-    for (std::size_t n = 0; n < covered.values().size(); ++n)
-        if (!piece[n] && isOnSheet(patch, n)) covered.values()[n] = 0;
+    const PlateGrid& grid    = patch.plate.grid;
+    const Footprint  touch   = onPiece(lattice.loads[lattice.loads.size() / 2], grid, patch.covered);
+    const NodeField  covered = onlyPiece(grid, patch.covered, touchedPiece(patch, touch.load(grid)));
     for (Footprint& load : own.loads)
         load = shareOnSheet(load, covered) > kHardly ? cutToSheet(load, covered) : still(touch);
     return own;

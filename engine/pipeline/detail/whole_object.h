@@ -55,8 +55,12 @@ void findSheared(Patch& patch);
 /// \param covered   share of the sheet at the nodes [1]
 [[nodiscard]] Footprint onSheet(const Footprint& footprint, const NodeField& covered);
 
-/// Returns the lattice with the loads that lie on the patch's sheet; of those of which hardly anything does, the middle
-/// one instead.
+/// Returns that load on one piece of the sheet alone, the one that bears most of it. A fingertip that reaches across a
+/// slit is felt as if it touched one side: on the other one, which nothing may hold, no part of it weighs.
+[[nodiscard]] Footprint onPiece(const Footprint& footprint, const PlateGrid& grid, const NodeField& covered);
+
+/// Returns the lattice with the loads that lie on the touched piece of the patch's sheet; of those of which hardly
+/// anything does, the middle one instead.
 [[nodiscard]] FootprintLattice onSheet(const FootprintLattice& lattice, const Patch& patch);
 
 } // namespace palp

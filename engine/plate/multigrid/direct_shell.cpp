@@ -126,6 +126,12 @@ double geometricMean(const NodeField& field, const Which& which)
 
 } // namespace
 
+void goOnBeyondSheet(NodeField& deflection, const Shell& shell)
+{
+    if (const NodeField shares = sharesOfSheet(shell); !shares.values().empty())
+        goOn(deflection, shell.bending.grid, onSheet(shares, kLeastSheet));
+}
+
 struct DirectShell::Impl {
     Shell              shell;
     const HostKernels& kernels;
@@ -183,11 +189,10 @@ DirectShell::Impl::Impl(const Shell& given, std::span<const Footprint> footprint
 {
     const auto began = Clock::now();
     if (const auto why = whyUnsolvable(shell)) throw Error("the shell cannot be solved: " + *why);
-    // Shares of a sheet: ten times what the void has; a node that the rest holds well [1].
-    constexpr double kNothing = 1e-5, kSome = 0.1;
+    constexpr double kSome  = 0.1; // share of a sheet at a node that the rest holds well [1]
     const NodeField  shares = sharesOfSheet(shell);
     stressed                = withStress(shell);
-    sheet                   = onSheet(shares, kNothing);
+    sheet                   = onSheet(shares, kLeastSheet);
     isOwnSheet              = onSheet(shares, kSome);
     knownW = hangingTogether(shell.bending.grid, withDeflection(shell.bending.grid, sheet, stressed), footprints);
     for (std::size_t n = 0; n < knownW.size(); ++n) {
@@ -446,8 +451,6 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
     }
     if (!rounding) rounding = worst;
     if (!(worst * worst <= tolerance)) return std::nullopt; // as large a share is left of it after the step
-    // What resists by nothing but its share in the stresses moves as far as these want, to no good for whoever takes
-    // the deflection for a surface: of a low arch the law of large deflections was 14 % off so.
     goOn(solution.whole.deflection, shell.bending.grid, sheet);
     SolveReport& report      = solution.whole.report;
     report.solver            = compute::kHostProcessor;

@@ -12,6 +12,11 @@ namespace palp {
 
 struct HostKernels;
 
+/// Lets the deflection of an object that ends in its window go on beyond its border as it does within: what resists
+/// there by nothing but its share in the stresses moves as far as these want, to no good for whoever takes the
+/// deflection for a surface. By it laws of large deflections were off by up to ninety times.
+void goOnBeyondSheet(NodeField& deflection, const Shell& shell);
+
 /// Solves for loads on an object that ends in its window by a factor of its whole matrix, on the host and in doubles.
 /// Multigrid needs 25 to 200 steps for such shells, and some it does not solve: what lies beyond a border has next to
 /// no rigidity, or it bridges gaps, and the sheet's thrusts cancel most of an answer.

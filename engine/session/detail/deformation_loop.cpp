@@ -28,8 +28,8 @@ void DeformationLoop::run(const std::atomic<bool>& over, const std::atomic<Clock
         DeformationAnswer answer = solved(*newest, pace.begins(Seconds(began.time_since_epoch()).count()));
         const auto        pause  = Clock::duration((stopped ? stopped->load() : 0) - before); // stopped is not solving
         const double      took   = std::max(0.0, Seconds(Clock::now() - began - pause).count());
-        pace.ended(took);
         if (!answer.update && !newest->touching) continue; // nothing is near
+        if (answer.isSolved) pace.ended(took);
         slow.solve.add(took);
         slow.addPatch(answer.update != nullptr, answer.why);
         if (answer.ends) {

@@ -247,11 +247,13 @@ void fitMap(const FitOptions& o)
     const fit::FeltFit   found    = fit::fitFeltMap(start, loaded.cloud.stiffness(), settings, solver);
     const std::string    takeover = sayTakeovers(solver, told);
     if (!o.out.empty()) {
-        const auto felt = loaded.cloud.stiffness();
-        writeCloud(o.out, found.object.cloud(),
-                   std::vector<NamedField>{
-                       {"measured", "N/m", felt}, {"felt", "N/m", found.felt}, {"residual", "", found.residual}},
-                   {CloudEncoding::binaryLittleEndian, loaded.faces});
+        const auto              felt = loaded.cloud.stiffness();
+        const FieldsBeside      beside(loaded);
+        std::vector<NamedField> fields(beside.all().begin(), beside.all().end());
+        fields.push_back({"measured", "N/m", felt});
+        fields.push_back({"felt", "N/m", found.felt});
+        fields.push_back({"residual", "", found.residual});
+        writeCloud(o.out, found.object.cloud(), fields, {CloudEncoding::binaryLittleEndian, loaded.faces});
     }
     std::vector<std::string> undrawn;
     if (!o.page.empty()) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <iostream>
+#include <sstream>
 
 #include "device/homing.h"
 #include "engine/core/contract.h"
@@ -101,6 +102,19 @@ void addOption(CLI::App& command, DeviceOptionValues& values, const DeviceOption
 }
 
 } // namespace
+
+std::string motionOf(const HandOptions& options)
+{
+    const HandChoice   choice = readChoice(options);
+    std::ostringstream text;
+    text << "speed " << choice.speed << " m/s, reach " << choice.radius << " m, depth ";
+    if (choice.depth)
+        text << *choice.depth << " m";
+    else
+        text << "by the thickness";
+    if (choice.grip) text << ", arm " << choice.grip->stiffness << " N/m";
+    return text.str();
+}
 
 double reachOf(const std::string& text, double metresPerPlainNumber)
 {

@@ -20,6 +20,10 @@ struct HandOptions {
     const std::atomic<bool>* cancel = nullptr; ///< see DeviceRequest
 };
 
+/// Returns how a generated hand moves and how its arm is held, in SI units; the same words for the same motion.
+/// \throws Error naming the option whose text is not understood
+[[nodiscard]] std::string motionOf(const HandOptions& options);
+
 /// Returns "press, circle, scan": the hands that Palpate generates.
 [[nodiscard]] std::string generatedHands();
 

@@ -41,6 +41,7 @@ struct Felt {
         : scene(o.scene.load()), loaded(o.scene.loadObject(scene)), object(loaded.object),
           solver(openSolver(scene.solver)), told(solver.counts().takeovers)
     {
+        scene.patch = settledFor(object, scene.patch);
         warn(cloudWarnings(scene, object.cloud(), loaded.report), said);
     }
     Scene             scene;
@@ -54,10 +55,11 @@ struct Felt {
 };
 
 /// Returns the length of the path to either side of the middle [m].
-double eachSide(const PerceiveOptions& o, const Scene& scene)
+double eachSide(const PerceiveOptions& o, const Scene& scene, const SoftObject& object)
 {
-    constexpr double kShare = 1.0 / 3; // of the window, beyond which the middle is not felt [1]
-    return o.reach.empty() ? kShare * scene.patch.window : reachOf(o.reach, metresPerPlainNumber(o.scene, scene));
+    constexpr double kShare = 1.0 / 3; // of what bends, beyond which the middle is not felt [1]
+    return o.reach.empty() ? kShare * bentSize(object, scene.patch)
+                           : reachOf(o.reach, metresPerPlainNumber(o.scene, scene));
 }
 
 void write(const std::string& file, const std::string& text)
@@ -168,7 +170,7 @@ void perceive(const PerceiveOptions& o)
     refuseSourcesAsTarget(o.scene, felt.scene, "--picture", o.picture);
     const FeltLine         line = feltLine(felt.scene, felt.object,
                                    o.along.empty() ? std::optional<glm::dvec3>() : parsePoint(o.along, "--along"),
-                                           eachSide(o, felt.scene));
+                                           eachSide(o, felt.scene, felt.object));
     Progress               progress("feeling");
     const auto             onStep = [&](std::size_t done, std::size_t total) { progress.at(done, total); };
     const ScenePerception  found  = perceive(felt.scene, felt.object, line, o.places, felt.solver, onStep);
@@ -198,7 +200,9 @@ void addPerceiveCommand(CLI::App& app)
     const auto o       = std::make_shared<PerceiveOptions>();
     o->scene.addTo(*command, SceneKey::Group::session);
     command->add_option("--along", o->along, "direction of the path through the place, X,Y,Z [the chart's east]");
-    command->add_option("--reach", o->reach, "length of the path to either side, such as 10mm [a third of the window]");
+    command->add_option(
+        "--reach", o->reach,
+        "length of the path to either side, such as 10mm [a third of the window, or of the object that it spans]");
     command->add_option("--places", o->places, "number of places at rest along the path")
         ->check(CLI::Range(3, 1001))
         ->capture_default_str();

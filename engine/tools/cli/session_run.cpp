@@ -190,6 +190,7 @@ nlohmann::json jsonOf(const SessionRun& run)
         all["recorded"] = {{"folder", run.folder},
                            {"samples", run.recorded->ticks},
                            {"lost", run.recorded->lost},
+                           {"stopped", orNull(run.recorded->stopped.value_or(""))},
                            {"markers", run.recorded->markers},
                            {"markers_lost", run.recorded->markersLost}};
     for (const StreamReport& stream : run.streams)

@@ -212,6 +212,7 @@ void Sitting::agree()
                                     .hand        = run_.session.hand.hand,
                                     .path        = pathOf(run_.session.hand.hand),
                                     .clock       = run_.session.clock,
+                                    .motion      = motionOf(run_.session.hand) + ", threads " + run_.session.threads,
                                     .version     = PALPATE_VERSION " " PALPATE_COMMIT};
     for (const Felt& felt : felt_) now.clouds.push_back(fingerprint(felt.loaded.object.cloud()));
     if (isThere(path)) {
@@ -235,6 +236,7 @@ void Sitting::agree()
                         shownPath(*now.hand) +
                         " has another one, or has changed since; trials could not be compared; choose another --out");
         demandSame("--clock", before.clock, now.clock, std::identity());
+        demandSame("motion of the hand", before.motion, now.motion, std::identity());
         return;
     }
     for (const auto& other : othersIn(run_.out))

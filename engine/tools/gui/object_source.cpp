@@ -50,8 +50,8 @@ SceneValues ObjectSource::valuesWith(SceneValues others) const
 Scene ObjectSource::sceneWith(const SceneValues& values) const
 {
     if (!recorded_) return settings_.open(what_, values);
-    Scene scene = parseScene(recorded_->scene, what_, std::filesystem::current_path(),
-                             {.flags = values, .toolKeys = settings_.toolKeys});
+    Scene scene =
+        parseScene(recorded_->scene, what_, recorded_->folder, {.flags = values, .toolKeys = settings_.toolKeys});
     if (!values.contains("solver")) scene.solver = stage_->scene().solver;
     return scene;
 }

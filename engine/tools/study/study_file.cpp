@@ -46,6 +46,7 @@ StudyFile parseStudyFile(std::string_view text, const std::string& what)
             .hand          = textIn(file, "hand"),
             .path          = textIn(file, "hand_path"),
             .clock         = textIn(file, "clock"),
+            .motion        = textIn(file, "motion"),
             .feltStiffness = feltIn(file),
             .version       = textIn(file, "version").value_or("")};
 }
@@ -57,6 +58,7 @@ std::string studyJson(const StudyFile& file)
     if (file.hand) json["hand"] = *file.hand;
     if (file.path) json["hand_path"] = *file.path;
     if (file.clock) json["clock"] = *file.clock;
+    if (file.motion) json["motion"] = *file.motion;
     for (const auto& [condition, stiffness] : file.feltStiffness)
         json[kFelt][condition] = stiffness ? Json(*stiffness) : Json();
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

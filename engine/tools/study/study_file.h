@@ -19,6 +19,7 @@ struct StudyFile {
     std::optional<std::string> hand{};   ///< as --hand; files of earlier versions have none
     std::optional<std::string> path{};   ///< fingerprint() of the hand's file; none of other hands and in earlier files
     std::optional<std::string> clock{};  ///< as --clock; files of earlier versions have none
+    std::optional<std::string> motion{}; ///< how the hand moves, and --threads; files of earlier versions have none
     /// [N/m] felt at the place of each condition's scene, as a device renders it; empty: nothing can be felt there
     std::map<std::string, std::optional<double>> feltStiffness{};
     std::string                                  version{}; ///< of the program that wrote it

@@ -52,15 +52,16 @@ void addValues(Flags& flags, const JsonObject& condition)
     if (!condition.has("values")) return;
     const JsonObject              values = condition.object("values");
     std::vector<std::string_view> known;
-    for (const SceneKey* key : sceneKeysWith(&huntKeys()))
+    const auto                    keys = sceneKeysWith(&huntKeys());
+    for (const SceneKey* key : keys)
         if (key->name != "cloud") known.push_back(key->name); // another cloud needs another scene
     values.allowOnly(known);
-    for (const std::string_view key : known) {
-        if (!values.has(key)) continue;
-        const Json  value = Json::parse(values.json(key));
+    for (const SceneKey* key : keys) {
+        if (!values.has(key->name)) continue;
+        const Json  value = Json::parse(values.json(key->name));
         std::string text  = value.is_string() ? value.get<std::string>() : value.dump();
-        if (value.is_array()) text = text.substr(1, text.size() - 2); // "x,y,z"
-        flags[std::string(key)] = text;
+        if (value.is_array() && key->kind != SceneKey::Kind::objects) text = text.substr(1, text.size() - 2); // "x,y,z"
+        flags[std::string(key->name)] = text;
     }
 }
 

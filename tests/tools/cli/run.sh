@@ -81,6 +81,8 @@ good 'the map of presses' info felt.csv
 holds '300 N/m' && holds 'felt stiffness [N/m]'
 good 'a map' fit felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --page map.html --out fitted.ply
 holds 'left over'
+good 'the object of a map' info fitted.ply --json
+grep -aq '^property double stiffening' fitted.ply && passed=$((passed + 1)) || complain "fit lost how the places stiffen: $(head -c 600 fitted.ply)"
 grep -v '^#' felt.csv >bare_felt.csv
 PALPATE_THICKNES=1 "$palpate" fit bare_felt.csv --footprint-radius 8mm --thickness 4mm --foundation 1MPa/m --window 12cm --solver host --json >out.txt 2>err.txt
 holds 'PALPATE_THICKNES is not used' && holds 'assumed metres'
@@ -1098,6 +1100,14 @@ fi
 good 'perceive' perceive soft.json --places 5 --reach 8mm --out path.svg --picture object.svg --picture-places 20
 holds 'a prediction, not a study'
 for file in path.svg object.svg; do [ -s $file ] && passed=$((passed + 1)) || complain "perceive did not write $file"; done
+"$palpate" touch sample:ellipsoid --theory shell --window auto --cells 16 --json 2>/dev/null | awk '/"window": [0-9]/ { print $2 + 0 }' >window.txt
+good 'perceive a third of a window that is chosen' perceive sample:ellipsoid --theory shell --window auto --cells 16 --places 3 --json
+awk -v window="$(cat window.txt)" '/"reach":/ { exit !(3 * $2 > 0.999 * window && 3 * $2 < 1.001 * window) }' out.txt && passed=$((passed + 1)) ||
+    complain "a window of $(cat window.txt) m, and $(grep '"reach"' out.txt)"
+# A stiffening that is in the cloud's file is felt in a replay as in the session.
+good 'paint a stiffening' paint sample:sheet --points 2000 --stiffness constant:value=1e5 --stroke 'at=0,0,0 radius=3cm stiffening=800' --out stiffens.ply
+good 'record on it' run stiffens.ply --foundation 1.74MPa/m --window 50mm --cells 16 --hand press --clock virtual --seconds 2 --solver host --record stiffens
+good 'replay of what stiffens' replay stiffens --compare
 good 'perceive as JSON' perceive soft.json --places 5 --reach 8mm --along 0,1,0 --json
 for key in '"prediction": true' '"weber_fraction": 0.07' '"floor_is_low": true' '"right_answers"' '"steps_in_passing"' '"felt_stiffness"' '"direction"' '"warnings": ['; do holds "$key"; done
 bad 'a path that leaves the surface' 'along the surface' perceive soft.json --along 0,0,1

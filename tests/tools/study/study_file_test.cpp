@@ -20,6 +20,7 @@ TEST(StudyFiles, WhatIsWrittenIsRead)
                             .hand          = "falcon@3",
                             .path          = "2c",
                             .clock         = "real",
+                            .motion        = "speed 0.05 m/s",
                             .feltStiffness = {{"SOFT", 300.25}, {"AIR", std::nullopt}},
                             .version       = "0.2.0 abc"};
     const StudyFile read = parseStudyFile(studyJson(written), "study.json");
@@ -32,7 +33,7 @@ TEST(StudyFiles, OlderOnesNameNeitherHandNorClock)
     const StudyFile read =
         parseStudyFile(R"({"format": 1, "participant": "p", "plan": "{}", "clouds": ["0"]})", "study.json");
     EXPECT_EQ(read.participant, "p");
-    EXPECT_FALSE(read.hand || read.path || read.clock);
+    EXPECT_FALSE(read.hand || read.path || read.clock || read.motion);
     EXPECT_TRUE(read.feltStiffness.empty());
 }
 

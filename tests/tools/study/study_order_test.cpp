@@ -157,7 +157,9 @@ TEST(StudyPlan, APresetAndValuesLieOverTheScene)
     static_cast<void>(folder.write("s.json", R"({"cloud": "sample:sheet", "foundation": 1e6, "max_force": 3})"));
     const StudyPlan study = parsePlan(
         R"({"title": "t", "seconds": 3600, "conditions": [{"name": "p", "scene": "s.json", "preset": "paper", "values":
-            {"resampling": "log-mean", "from": [0, 0, 2], "stiffness": {"law": "constant", "value": 5e4}, "points": 5000}}],
+            {"resampling": "log-mean", "from": [0, 0, 2],
+             "held": [{"ball": [0, 0, 0], "radius": 1e-3}, {"box": [[1, 1, 1], [2, 2, 2]]}],
+             "stiffness": {"law": "constant", "value": 5e4}, "points": 5000}}],
             "tasks": [{"name": "n", "kind": "yes-no", "question": "?", "yes_for": ["p"]}]})",
         "plan.json", folder.path());
 
@@ -168,6 +170,7 @@ TEST(StudyPlan, APresetAndValuesLieOverTheScene)
     EXPECT_EQ(scene.patch.foundation, 0);
     EXPECT_EQ(scene.maxForce, 3);
     EXPECT_EQ(scene.points, 5000u);
+    EXPECT_TRUE(scene.held.isThere()) << "a list of objects keeps its brackets";
     EXPECT_EQ(loadCloud(scene).cloud.stiffness()[7], 5e4);
     EXPECT_EQ(trialsOf(study, 1)[0].right, "yes");
     EXPECT_EQ(study.seconds, 3600) << "the most";

@@ -14,6 +14,8 @@ using Which = std::vector<std::uint8_t>; ///< nodes of a grid: 1 for those that 
 /// Returns the nodes at which the bed leaves something of Airy's function.
 [[nodiscard]] Which withStress(const Shell& shell);
 
+inline constexpr double kLeastSheet = 1e-5; ///< share of a sheet, ten times what the void has [1]
+
 /// Returns the nodes at which there is more than a share of the sheet.
 [[nodiscard]] Which onSheet(const NodeField& shares, double more);
 

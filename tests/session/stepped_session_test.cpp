@@ -1,0 +1,103 @@
+#include "engine/session/stepped_session.h"
+
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "engine/session/recorded_session.h"
+#include "engine/session/scene.h"
+#include "tests/support/temporary_folder.h"
+
+namespace palp {
+namespace {
+
+/// Points of a caller's own, each with all that can be said of it.
+LoadedCloud ownPoints()
+{
+    std::mt19937_64                        bits(1);
+    std::uniform_real_distribution<double> random(-1, 1);
+    std::vector<glm::dvec3>                positions;
+    std::vector<glm::vec3>                 normals;
+    std::vector<double>                    stiffness, stiffening, foundation;
+    for (int i = -20; i <= 20; ++i)
+        for (int j = -20; j <= 20; ++j) {
+            const double up = 1e-4 * random(bits), lean = 0.3 * random(bits);
+            positions.emplace_back(1e-3 * i, 1e-3 * j, up);
+            normals.push_back(glm::vec3(glm::normalize(glm::dvec3(lean, 0.1, 1))));
+            stiffness.push_back(3e5 * (1.5 + random(bits)));
+            stiffening.push_back(400 * (1.5 + random(bits)));
+            foundation.push_back(1e6 * (1.5 + random(bits)));
+        }
+    LoadedCloud own{.cloud   = PointCloud(std::move(positions), std::move(stiffness), StiffnessKind::modulus),
+                    .report  = {},
+                    .normals = std::move(normals)};
+    own.stiffening = std::move(stiffening);
+    own.foundation = std::move(foundation);
+    return own;
+}
+
+Scene ownScene(const char* more = "")
+{
+    return parseScene(
+        std::string(R"({"foundation": 1e6, "below": "own", "window": "20 mm", "cells": 16, "solver": "host",
+        "footprint_radius": "2 mm")") +
+            more + "}",
+        "scene", ".", {.withoutCloud = true});
+}
+
+/// A recording of a caller's points is a folder that can be moved, and has all of what was said of them.
+TEST(SteppedSession, ARecordingOfOwnPointsHasAllThatWasSaidOfThem)
+{
+    const TemporaryFolder folder;
+    const auto            own    = std::make_shared<const LoadedCloud>(ownPoints());
+    const Scene           scene  = ownScene();
+    const SoftObject      object = objectOf(*own, scene).object;
+    {
+        SteppedSession session(object, scene, {}, own);
+        session.record(folder.path() / "there", "a test");
+        for (int n = 0; n < 20; ++n) session.step(1e-3 * n, {.position = {0, 0, 5e-3}});
+        EXPECT_EQ(session.stopRecording().ticks, 20U);
+    }
+    std::filesystem::rename(folder.path() / "there", folder.path() / "moved");
+    const Scene      read  = sceneOf(readSession((folder.path() / "moved").string()));
+    const SoftObject again = loadObject(read).object;
+    ASSERT_EQ(again.size(), object.size());
+    EXPECT_TRUE(std::ranges::equal(again.stiffening(), object.stiffening()));
+    EXPECT_TRUE(std::ranges::equal(again.foundationShape(), object.foundationShape()));
+    EXPECT_TRUE(std::ranges::equal(again.cloud().stiffness(), object.cloud().stiffness()));
+    for (std::uint32_t n = 0; n < object.size(); ++n) {
+        EXPECT_EQ(again.positions()[n], object.positions()[n]) << n;
+        EXPECT_EQ(again.survey().normal(n), object.survey().normal(n)) << n;
+    }
+}
+
+/// While the clutch is held the tool stays and there is no force; afterwards it goes on from there.
+TEST(SteppedSession, TheScenesClutchHoldsTheTool)
+{
+    const auto     own   = std::make_shared<const LoadedCloud>(ownPoints());
+    const Scene    scene = ownScene(R"(, "clutch_button": 2)");
+    SteppedSession session(objectOf(*own, scene).object, scene, {}, own);
+    double         time = 0;
+    const auto     tick = [&](double height, std::uint32_t buttons) {
+        Hand hand;
+        hand.position = {0, 0, height};
+        hand.buttons  = buttons;
+        return session.step(time += 1e-3, hand);
+    };
+    EXPECT_EQ(tick(5e-3, 0).hip.z, 5e-3);
+    for (int n = 0; n < 10; ++n) {
+        const TickRecord held = tick(5e-3 + 1e-4 * n, 2);
+        EXPECT_EQ(held.hip.z, 5e-3) << n;
+        EXPECT_EQ(held.device >> 16U, 0U) << "the button means nothing else";
+        EXPECT_NE(held.device & 1U << 11U, 0U);
+    }
+    EXPECT_NEAR(tick(5.9e-3, 0).hip.z, 5e-3, 1e-12);
+    EXPECT_NEAR(tick(5.8e-3, 0).hip.z, 4.9e-3, 1e-12);
+}
+
+} // namespace
+} // namespace palp
