@@ -246,27 +246,35 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
     const int reach    = homogeneous.foundation > 0 ? kRungs : 0;
     lattice.rigidity   = homogeneous.rigidity(0, 0);
     lattice.foundation = homogeneous.foundation;
+    const Footprint&                      finger = lattice.loads[lattice.loads.size() / 2];
     std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
     std::vector<double>                   middles(rungs.size());
+    const auto                            alone = [&](const Plate& of) {
+        return solver.solveFootprints(of, {&finger, 1}, 0, tolerance, tolerance);
+    };
     for (int n = 0; n <= 2 * reach; ++n) {
-        const int rung              = (n + 1) / 2 * (n % 2 == 0 ? 1 : -1); // 0, -1, 1, -2, ...
-        Plate     plate             = homogeneous;
-        plate.rigidity              = NodeField(grid, lattice.rigidity * std::pow(10, double(rung) / kRungsPerDecade));
-        const TableSolution own     = solveTable(plate, lattice, solver, tolerance);
-        const double        middle  = own.table.middle().lnCompliance;
-        auto&               entries = rungs[std::size_t(rung + reach)] = own.table.compliance;
-        for (ComplianceTable::Entry& entry : entries)
-            entry = wholeObject ? ComplianceTable::Entry{}
-                                : ComplianceTable::Entry{entry.value - middle, entry.slopeX, entry.slopeZ};
-        middles[std::size_t(rung + reach)] = middle;
-        if (curved > 0) {
-            Plate dome = plate;
-            dome.foundation += curved * plate.rigidity(0, 0);
-            const Footprint& finger = lattice.loads[lattice.loads.size() / 2];
-            middles[std::size_t(rung + reach)] =
-                std::log(solver.solveFootprints(dome, {&finger, 1}, 0, tolerance, tolerance).responses.front().work);
+        const int  rung  = (n + 1) / 2 * (n % 2 == 0 ? 1 : -1); // 0, -1, 1, -2, ...
+        const auto at    = std::size_t(rung + reach);
+        Plate      plate = homogeneous;
+        NodeField  deflection;
+        plate.rigidity = NodeField(grid, lattice.rigidity * std::pow(10, double(rung) / kRungsPerDecade));
+        if (wholeObject) { // no table of it is like that of a homogeneous window
+            FootprintSolution own = alone(plate);
+            middles[at]           = std::log(own.responses.front().work);
+            deflection            = std::move(own.whole.deflection);
+        } else {
+            TableSolution own = solveTable(plate, lattice, solver, tolerance);
+            middles[at]       = own.table.middle().lnCompliance;
+            rungs[at]         = own.table.compliance;
+            for (ComplianceTable::Entry& entry : rungs[at])
+                entry = {entry.value - middles[at], entry.slopeX, entry.slopeZ};
+            deflection = std::move(own.middle.deflection);
         }
-        if (rung == 0) lattice.feltRadius = bendingRadius(plate, own.middle.deflection);
+        if (rung == 0) lattice.feltRadius = bendingRadius(plate, deflection);
+        if (curved > 0) {
+            plate.foundation += curved * plate.rigidity(0, 0);
+            middles[at] = std::log(alone(plate).responses.front().work);
+        }
     }
     lattice.rungs   = std::move(rungs);
     lattice.middles = std::move(middles);

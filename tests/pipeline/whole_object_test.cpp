@@ -10,6 +10,7 @@
 #include "engine/core/contract.h"
 #include "engine/pipeline/deform.h"
 #include "engine/pipeline/detail/node_pieces.h"
+#include "engine/pipeline/homogeneous_sites.h"
 #include "engine/pipeline/patch_warnings.h"
 #include "engine/plate/load.h"
 #include "tests/support/sanitized.h"
@@ -230,6 +231,31 @@ TEST(WholeObject, AFoundationIsFeltAsInAnyWindow)
                                 .withHeld({});
     EXPECT_NEAR(touched(drum, 0, 0, whole).compliance / touched(drum, 0, 0, fixed).compliance, 1, 0.02)
         << "a dent of 3 mm, cells of 0.7 and of 1 mm";
+}
+
+/// What answers until the first table knows that a foundation hardly minds the sheet: half a sheet that is thirty times
+/// as stiff as the other was guessed in proportion, 2.4 times too stiff on the soft half.
+TEST(WholeObject, TheFirstAnswerOnAFoundationIsNearThatOfTheTable)
+{
+    PatchSettings settings = kWhole;
+    settings.foundation    = 1e6;
+    std::vector<glm::dvec3> points;
+    std::vector<double>     moduli;
+    for (int i = -40; i <= 40; ++i)
+        for (int j = -20; j <= 20; ++j) {
+            points.emplace_back(1e-3 * i, 1e-3 * j, 0);
+            moduli.push_back(i > 0 ? 30 * kModulus : kModulus);
+        }
+    const SoftObject sheet(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus), kSheet);
+    PlateSolver      host("host");
+    const auto       lattice = footprintLattice(sheet, settings, 3, host);
+    const auto       first   = homogeneousLaw(sheet, lattice);
+    for (const double x : {-20e-3, 20e-3}) {
+        const auto guess = first.at({x, 0, 0});
+        ASSERT_TRUE(guess) << x;
+        const double table = std::log(touched(sheet, x, 0, settings).compliance);
+        EXPECT_NEAR(guess->lnCompliance, table, 0.15) << x << ": one cell of the sites is wider than the dent";
+    }
 }
 
 /// A dish: a cap of a sphere of 60 mm, 50 mm wide, held at its stem of 12 mm, pressed between stem and rim.
