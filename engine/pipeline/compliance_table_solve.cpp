@@ -242,10 +242,12 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
                     formatQuantity(shape.radius, "m") + "; expected at least " + formatQuantity(wanted, "m"));
 
     FootprintLattice lattice{.shape = shape, .wholeObject = wholeObject, .shells = std::make_shared<ShellWindows>()};
-    lattice.loads      = footprintsAt(grid, shape, [](const ChartPoint& place) { return place; });
-    const int reach    = homogeneous.foundation > 0 ? kRungs : 0;
-    lattice.rigidity   = homogeneous.rigidity(0, 0);
-    lattice.foundation = homogeneous.foundation;
+    lattice.loads = footprintsAt(grid, shape, [](const ChartPoint& place) { return place; });
+    // A factorisation for each rung of a large window would take minutes.
+    const bool isSlow                            = wholeObject && solver.name() == PlateSolver::kReference;
+    const int  reach                             = homogeneous.foundation > 0 && !isSlow ? kRungs : 0;
+    lattice.rigidity                             = homogeneous.rigidity(0, 0);
+    lattice.foundation                           = homogeneous.foundation;
     const Footprint&                      finger = lattice.loads[lattice.loads.size() / 2];
     std::vector<ComplianceTable::Entries> rungs(std::size_t(2 * reach + 1));
     std::vector<double>                   middles(rungs.size());
@@ -258,17 +260,17 @@ FootprintLattice solveLattice(const Plate& homogeneous, const FootprintTable& sh
         Plate      plate = homogeneous;
         NodeField  deflection;
         plate.rigidity = NodeField(grid, lattice.rigidity * std::pow(10, double(rung) / kRungsPerDecade));
-        if (wholeObject) { // no table of it is like that of a homogeneous window
-            FootprintSolution own = alone(plate);
-            middles[at]           = std::log(own.responses.front().work);
-            deflection            = std::move(own.whole.deflection);
-        } else {
+        if (!wholeObject) {
             TableSolution own = solveTable(plate, lattice, solver, tolerance);
             middles[at]       = own.table.middle().lnCompliance;
             rungs[at]         = own.table.compliance;
             for (ComplianceTable::Entry& entry : rungs[at])
                 entry = {entry.value - middles[at], entry.slopeX, entry.slopeZ};
             deflection = std::move(own.middle.deflection);
+        } else if (rung == 0 || !(curved > 0)) { // no table of it is like that of a homogeneous window
+            FootprintSolution own = alone(plate);
+            middles[at]           = std::log(own.responses.front().work);
+            deflection            = std::move(own.whole.deflection);
         }
         if (rung == 0) lattice.feltRadius = bendingRadius(plate, deflection);
         if (curved > 0) {

@@ -537,7 +537,8 @@ private:
 struct PlateSolver::Learned {
     MemoryShortage shortage; ///< of the processor's memory for one load, in nodes
     std::string    shortageNote;
-    HardPlates     hard;
+    HardPlates     hard;   ///< for multigrid
+    HardPlates     beyond; ///< multigrid, and the reference solves them no better
 };
 
 PlateSolver::PlateSolver(std::string_view wanted, double patience, SoftwareBits bits)
@@ -682,16 +683,19 @@ Answer PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solv
         if (orByReference) return refer();
         std::rethrow_exception(broken);
     }
-    if (!orByReference) return std::move(*answer);
+    if (!orByReference || learned_->beyond.knownBecause(plate, tolerance)) return std::move(*answer);
     // Where rounding spoils a factorisation, as on hardly any foundation, what multigrid has reached may be nearer.
     std::optional<Answer> exact;
     try {
         exact = refer();
-    } catch (const Error&) {
+    } catch (const Error&) { // it cannot be factorised
+    }
+    const double left   = reportOf(*answer).errorEstimate.value_or(std::numeric_limits<double>::infinity());
+    const double before = exact ? reportOf(*exact).errorEstimate.value_or(0) : 0; // its step leaves about the square
+    if (!exact || (!reportOf(*exact).converged && (before < 1 ? before * before : before) > left)) {
+        learned_->beyond.remember(plate, tolerance, note_);
         return std::move(*answer);
     }
-    const double left = reportOf(*answer).errorEstimate.value_or(std::numeric_limits<double>::infinity());
-    if (!reportOf(*exact).converged && reportOf(*exact).errorEstimate.value_or(0) > left) return std::move(*answer);
     learned_->hard.remember(plate, tolerance, note_);
     return std::move(*exact);
 }

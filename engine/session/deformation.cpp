@@ -221,7 +221,7 @@ DeformationAnswer Deformation::solveAt(const Contact& contact, const Touch& touc
         Patch patch = deformWithTable(*object_, contact, settings_, lattice_, solver_, frame_, slot->table);
         if (!patch.deformed()) return {{}, {}, "the points around the contact determine no surface"};
         return answerOf(std::move(patch), touch, slot);
-    } catch (const std::exception& error) { // the window is off the object, the plate has no solution, or memory ends
+    } catch (const Error& error) { // the window is off the object, or the plate has no solution there
         return {{}, {}, error.what()};
     }
 }

@@ -49,7 +49,8 @@ private:
         const std::string start =
             solved_ ? "the plate cannot be solved where the hand touches, which feels its last answer "
                       "for a quarter of a second more: "
-                    : "the hand touches and feels nothing, because the plate cannot be solved: ";
+                    : "the hand touches and feels nothing after a quarter of a second, because the plate cannot be "
+                      "solved: ";
         tellOnce(kindOf(start + why), start + why);
     }
 

@@ -251,8 +251,7 @@ double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUp
 {
     if (newest && newest->table.sequence != answered_ && newest->table.usable()) {
         answered_ = newest->table.sequence;
-        // One that ended was made for another place than that of a contact that began without one.
-        if (!(newest->table.ended && handed && handed->guessed)) asked_ = now.time - newest->table.time;
+        if (!newest->table.ended) asked_ = now.time - newest->table.time; // that was as good as new while it lasted
     }
     const bool tableInUse = handed && !handed->guessed;
     if ((touching && !touched_ && !tableInUse) || (handed && lastsStill(*handed))) asked_ = 0;

@@ -131,7 +131,10 @@ const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
     if (!good) hand.device = DeviceFault::kinematics;
     hand.answerTime = s.time;
     hand.sequence   = s.steps;
-    holdByClutch(hand, s.clutch);
+    if (hand.device == DeviceFault::none)
+        holdByClutch(hand, s.clutch);
+    else if (clutchBit(s.scene) != 0)
+        hand.position = s.last.hip; // no place of a hand, by which a tool could move
     s.last   = s.servo.tick({s.time, dt}, hand, s.loop.newest(s.servo.tableInUse()));
     s.zeroed = !good || (s.zeroed && s.last.force != glm::dvec3(0));
     if (s.zeroed) s.last.force = {};

@@ -55,6 +55,26 @@ const PlateEdges kClamped{}, kCantilever{Edge::clamped, Edge::free, Edge::free, 
     kMixed{Edge::supported, Edge::guided, Edge::free, Edge::clamped},
     kFree{Edge::free, Edge::free, Edge::free, Edge::free};
 
+/// What a plate's answer is does not depend on the plates that were solved before, to the bit.
+TEST(DirectPlate, AnswersAlikeInTheUnitOfAnotherPlate)
+{
+    const Plate plate = discIn(40, 33, 100, kClamped);
+    const auto  loads = tableOn(plate.grid, 3);
+    DirectPlate own(plate);
+    const auto  answer = own.solve(plate, loads, 4, 1);
+    ASSERT_TRUE(answer);
+    for (const double scale : {0.5, 2.0, 7.0, 64.0}) {
+        Plate other = plate;
+        for (double& rigidity : other.rigidity.values()) rigidity *= scale;
+        DirectPlate earlier(other);
+        ASSERT_TRUE(earlier.suits(plate)) << scale;
+        const auto again = earlier.solve(plate, loads, 4, 1);
+        ASSERT_TRUE(again) << scale;
+        for (std::size_t n = 0; n < loads.size(); ++n)
+            EXPECT_EQ(again->responses[n].work, answer->responses[n].work) << scale << ", load " << n;
+    }
+}
+
 /// The reference has the same matrix in doubles; here rigidities are floats, rounded by 6e-8 at most. A cantilever's
 /// parts all bend it, and the matrix's condition of up to 1e11 times what doubles round, 1e-16, is 1e-5 at worst.
 TEST(DirectPlate, WhatFootprintsFeelIsThatOfTheReference)

@@ -37,7 +37,9 @@ TEST(FailureTeller, SaysEachKindOfReasonOnceWhateverItsNumbers)
 
     round();
     ASSERT_EQ(told.size(), 3U);
-    EXPECT_NE(told[0].find("feels nothing, because the plate cannot be solved: at (1, 2, 3) m"), std::string::npos);
+    EXPECT_NE(
+        told[0].find("feels nothing after a quarter of a second, because the plate cannot be solved: at (1, 2, 3) m"),
+        std::string::npos);
     EXPECT_NE(told[1].find("the points determine no surface"), std::string::npos);
     EXPECT_NE(told[2].find("the processor is lost"), std::string::npos);
     round(); // after an answer: the hand feels that one, which is another thing to say

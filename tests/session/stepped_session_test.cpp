@@ -75,7 +75,8 @@ TEST(SteppedSession, ARecordingOfOwnPointsHasAllThatWasSaidOfThem)
     }
 }
 
-/// While the clutch is held the tool stays and there is no force; afterwards it goes on from there.
+/// While the clutch is held the tool stays; afterwards it goes on from there. A tracker that has lost the hand moves
+/// nothing.
 TEST(SteppedSession, TheScenesClutchHoldsTheTool)
 {
     const auto     own   = std::make_shared<const LoadedCloud>(ownPoints());
@@ -97,6 +98,11 @@ TEST(SteppedSession, TheScenesClutchHoldsTheTool)
     }
     EXPECT_NEAR(tick(5.9e-3, 0).hip.z, 5e-3, 1e-12);
     EXPECT_NEAR(tick(5.8e-3, 0).hip.z, 4.9e-3, 1e-12);
+    Hand lost;
+    lost.device = DeviceFault::silent;
+    EXPECT_NEAR(session.step(time += 1e-3, lost).hip.z, 4.9e-3, 1e-12);
+    EXPECT_NEAR(tick(5.8e-3, 2).hip.z, 4.9e-3, 1e-12);
+    EXPECT_NEAR(tick(5.7e-3, 0).hip.z, 4.8e-3, 1e-12);
 }
 
 } // namespace

@@ -23,7 +23,7 @@ void checkFits(double rigidity, double unit)
 
 double rigidityUnit(double largest) noexcept
 {
-    return std::ldexp(1.0, std::ilogb(largest));
+    return std::ldexp(1.0, 2 * int(std::floor(std::ilogb(largest) / 2.0)));
 }
 
 bool isUnitOf(double unit, const Extremes& rigidity) noexcept

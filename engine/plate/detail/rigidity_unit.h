@@ -5,8 +5,8 @@
 
 namespace palp {
 
-/// Returns the unit of rigidities up to this one: a power of two, so that numbers relative to it have the same digits
-/// whatever the unit is.
+/// Returns the unit of rigidities up to this one: a power of four, so that numbers relative to it, and the square roots
+/// of these in factors, have the same digits whatever the unit is.
 /// \param largest  [N m], > 0
 [[nodiscard]] double rigidityUnit(double largest) noexcept;
 

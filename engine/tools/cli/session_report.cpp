@@ -119,7 +119,9 @@ std::vector<std::string> warningsOf(const SessionSummary& s)
             ": raise table_size or deformation_rate for fast hands");
     if (s.oldTable > 0)
         say("the plate did not answer for a quarter of a second, which took the force for " +
-            counted(s.oldTable, "tick") + ": lower cells, deformation_rate or table_size");
+            counted(s.oldTable, "tick") +
+            (s.failedPatches > 0 ? ", because it could not be solved there: " + s.why
+                                 : ": lower cells, or table_size"));
     if (10 * s.staleTicks > s.contactTicks) // one late patch is no slow machine
         say(counted(s.staleTicks, "tick") + " had a patch older than three of its periods: lower cells, "
                                             "deformation_rate or table_size");
