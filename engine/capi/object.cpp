@@ -69,9 +69,8 @@ StiffnessKind kindOf(const palpate_points& points)
 
 PointCloud cloudOf(const palpate_points& points)
 {
-    constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 2;
-    if (points.count == 0 || points.count > kMost)
-        throw Error("points: expected a count from 1 to " + std::to_string(kMost) + ", found " +
+    if (points.count == 0 || points.count > kMostInArray)
+        throw Error("points: expected a count from 1 to " + std::to_string(kMostInArray) + ", found " +
                     std::to_string(points.count));
     const Numbers           at(points.positions, points.position_type, points.position_stride, 3, "positions");
     std::vector<glm::dvec3> positions(points.count);
@@ -122,9 +121,8 @@ std::vector<Triangle> facesOf(const palpate_points& points)
 {
     std::vector<Triangle> faces;
     if (points.face_count == 0) return faces;
-    constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 2;
-    if (points.face_count > kMost)
-        throw Error("faces: expected a count of at most " + std::to_string(kMost) + ", found " +
+    if (points.face_count > kMostInArray)
+        throw Error("faces: expected a count of at most " + std::to_string(kMostInArray) + ", found " +
                     std::to_string(points.face_count));
     const std::uint32_t* const corners = &demand(points.faces, "faces");
     faces.resize(points.face_count);

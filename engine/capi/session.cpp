@@ -1,7 +1,5 @@
 #include <algorithm>
 #include <atomic>
-#include <cstdint>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -204,9 +202,9 @@ int palpate_run(const palpate_object* object, const double* times, const double*
     return guarded([&] {
         const palpate_object& of = demand(object, "object");
         demand(times, "times"), demand(places, "places");
-        constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 2;
-        if (count == 0 || count > kMost)
-            throw Error("count: expected 1 to " + std::to_string(kMost) + " places, found " + std::to_string(count));
+        if (count == 0 || count > kMostInArray)
+            throw Error("count: expected 1 to " + std::to_string(kMostInArray) + " places, found " +
+                        std::to_string(count));
         if (ticks > 0) demand(forces, "forces");
         std::vector<HandPose> poses(count);
         for (std::size_t n = 0; n < count; ++n) poses[n] = {times[n] - times[0], vectorOf(places + 3 * n)};

@@ -1,5 +1,4 @@
 #include "engine/session/session_hand.h"
-#include "engine/session/clutch.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "engine/core/nearest_name.h"
 #include "engine/core/quantity.h"
 #include "engine/core/shown_text.h"
+#include "engine/session/clutch.h"
 #include "engine/session/gripped_arm.h"
 #include "engine/session/scripted_hand.h"
 

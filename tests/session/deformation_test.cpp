@@ -1,9 +1,11 @@
 #include "engine/session/deformation.h"
 
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -212,6 +214,35 @@ TEST(DeformationLoop, HandsOnThatATableLastsNoLonger)
     EXPECT_FALSE(newest->table.lasts);
     EXPECT_EQ(loop.slow.failedPatches, 1U);
     EXPECT_FALSE(loop.patch.take()) << "nothing is drawn";
+}
+
+/// How long an answer took that is no new one says nothing of the next solve.
+TEST(DeformationLoop, IsNoFartherBehindAfterARest)
+{
+    constexpr int     kSolves = 3, kRests = 12;
+    std::atomic<bool> over  = false;
+    int               calls = 0;
+    double            lead  = 0; // [s]
+    DeformationLoop*  of    = nullptr;
+    const auto        slow  = [&](const Touch& touch, double given) {
+        lead = given;
+        if (++calls <= kSolves) std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        DeformationAnswer answer;
+        answer.update              = std::make_shared<PatchUpdate>();
+        answer.patch               = Patch{};
+        answer.isSolved            = calls <= kSolves;
+        over                       = calls > kSolves + kRests;
+        of->touch.draft()          = touch;
+        of->touch.draft().sequence = touch.sequence + 1;
+        of->touch.publish();
+        return answer;
+    };
+    DeformationLoop loop(slow, 500);
+    of                 = &loop;
+    loop.touch.draft() = {1, 1, true, {}, {0, 0, 1}, {}};
+    loop.touch.publish();
+    loop.run(over);
+    EXPECT_GT(lead, 30e-3) << "as long as a solve takes, and half a period";
 }
 
 } // namespace

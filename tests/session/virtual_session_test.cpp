@@ -499,6 +499,55 @@ TEST(Servo, ATableThatLastsIsNotTooOldWhereItReaches)
     }
 }
 
+/// One that lasted until now is as good as new then, however long ago its place was solved for.
+TEST(Servo, ATableThatEndsIsFeltForAQuarterOfASecondMore)
+{
+    const SheetSession                 session(sheetScene(kWart), HandMotion::press, 2);
+    Servo                              servo(session.object, session.scene);
+    Deformation                        deformation(session.object, session.scene);
+    std::shared_ptr<const PatchUpdate> news;
+    double                             last = 0; // [s] with a force
+    for (int n = 0; n < 3000; ++n) {
+        const double time = 1e-3 * n;
+        const auto   hip  = session.hand.position(std::min(time, 0.055));
+        if (servo.tick({time, 1e-3}, {hip, {}}, news.get()).force != glm::dvec3(0)) last = time;
+        if (time < 1 && n % 16 == 0 && servo.touch().touching) {
+            const auto update   = deformation.solve(servo.touch(), 1.0 / 60).update;
+            update->table.lasts = true;
+            news                = update;
+        }
+        if (n != 2000) continue;
+        auto ended            = std::make_shared<PatchUpdate>(*news);
+        ended->table.sequence = servo.touch().sequence;
+        ended->table.lasts    = false;
+        ended->table.ended    = true;
+        news                  = std::move(ended);
+    }
+    EXPECT_NEAR(last, 2.27, 0.01);
+}
+
+/// A deformation at 2 Hz has three of its periods for its first table.
+TEST(Servo, TheHomogeneousLawAnswersAsLongAsASlowDeformationMayTake)
+{
+    const SheetSession   session(sheetScene(kWart), HandMotion::press, 2);
+    const HomogeneousLaw first({{{0, 0, 0}, std::log(2e-3), std::log(3000.0), 0}}, 0.02);
+    Scene                slow = session.scene;
+    slow.deformationRate      = 2;
+    Servo  servo(session.object, slow, {}, &first);
+    double most = 0, least = 1e9, late = 0; // [N]
+    for (int n = 0; n < 3000; ++n) {
+        const double time = 1e-3 * n, since = time - 0.055; // [s]
+        const double force =
+            glm::length(servo.tick({time, 1e-3}, {session.hand.position(std::min(time, 0.055)), {}}, nullptr).force);
+        most = std::max(most, force);
+        if (since > 0.2 && since < 1.4) least = std::min(least, force); // it comes on within that time
+        if (since > 1.55) late = std::max(late, force);
+    }
+    EXPECT_GT(most, 0.1);
+    EXPECT_GT(least, 0.1 * most);
+    EXPECT_EQ(late, 0);
+}
+
 /// The homogeneous law answers a contact for a quarter of a second, also the contact after one that waited in vain.
 TEST(Servo, EveryContactWithoutATableHasItsOwnQuarterOfASecond)
 {

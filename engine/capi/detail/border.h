@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <string>
 
@@ -41,6 +43,9 @@ int guarded(const Body& body) noexcept
         return failure();
     }
 }
+
+/// The most points, faces or places that an array of the caller may have: indices are 32 bits wide.
+inline constexpr std::size_t kMostInArray = std::numeric_limits<std::uint32_t>::max() / 2;
 
 /// Returns what a pointer of the caller points to.
 /// \throws Error if it is null

@@ -44,40 +44,19 @@ double shareOf(double covered, double beyond)
     return beyond + (1 - beyond) * covered;
 }
 
-/// Calls visit(node) for the nodes around one, itself included.
-template <class Visit>
-void eachAround(const PlateGrid& grid, std::size_t node, const Visit& visit)
+/// Returns the pieces of the sheet: separate ones hang together only by what is next to nothing.
+std::vector<Nodes> piecesOf(const PlateGrid& grid, const NodeField& covered)
 {
-    const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
-    for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid.cellsX); ++a)
-        for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid.cellsZ); ++b)
-            visit(std::size_t(a * grid.nodesZ() + b));
+    return connected(grid, [&](std::size_t n) { return isOnSheet(covered, n); });
 }
 
-/// Adds to `is` the nodes of the sheet that hang together with one.
-void addPiece(std::vector<bool>& is, const PlateGrid& grid, const NodeField& covered, std::size_t node)
-{
-    std::vector<std::size_t> next;
-    const auto               reach = [&](std::size_t n) {
-        if (is[n] || !isOnSheet(covered, n)) return;
-        is[n] = true;
-        next.push_back(n);
-    };
-    reach(node);
-    while (!next.empty()) {
-        const std::size_t at = next.back();
-        next.pop_back();
-        eachAround(grid, at, reach);
-    }
-}
-
-/// Returns for each node whether it lies on the piece of the sheet that is touched: separate pieces hang together only
-/// by what is next to nothing.
+/// Returns for each node whether it lies on a piece of the sheet that is touched.
 std::vector<bool> touchedPiece(const Patch& patch, const NodeField& load)
 {
     std::vector<bool> is(patch.plate.grid.nodes());
-    for (std::size_t n = 0; n < is.size(); ++n)
-        if (load.values()[n] > 0) addPiece(is, patch.plate.grid, patch.covered, n);
+    for (const Nodes& piece : piecesOf(patch.plate.grid, patch.covered))
+        if (std::ranges::any_of(piece, [&](std::size_t n) { return load.values()[n] > 0; }))
+            for (const std::size_t n : piece) is[n] = true;
     return is;
 }
 
@@ -375,20 +354,14 @@ Footprint onPiece(const Footprint& footprint, const PlateGrid& grid, const NodeF
     const auto parts = connected(grid, [&](std::size_t n) { return load.values()[n] > 0 && isOnSheet(covered, n); });
     if (parts.size() < 2) return whole;
     double            most = 0;
-    std::vector<bool> best, seen(grid.nodes());
-    for (const Nodes& part : parts) {
-        if (seen[part.front()]) continue; // it hangs together with an earlier one, around a slit
-        std::vector<bool> piece(grid.nodes());
-        addPiece(piece, grid, covered, part.front());
-        double sum = 0; // [N]
-        for (std::size_t n = 0; n < piece.size(); ++n) {
-            if (!piece[n]) continue;
-            seen[n] = true;
-            sum += load.values()[n];
-        }
+    std::vector<bool> best(grid.nodes());
+    for (const Nodes& piece : piecesOf(grid, covered)) { // two parts hang together around a slit that ends
+        double sum = 0;                                  // [N]
+        for (const std::size_t n : piece) sum += load.values()[n];
         if (!(sum > most)) continue;
         most = sum;
-        best = std::move(piece);
+        best.assign(best.size(), false);
+        for (const std::size_t n : piece) best[n] = true;
     }
     return onSheet(footprint, onlyPiece(grid, covered, best));
 }

@@ -107,6 +107,8 @@ static void try_objects(const float* rows)
     points.faces           = face;
     points.face_count      = 1;
     CLAIM(refused(palpate_object_from_points(&points, kScene, &object), "face 0"));
+    points.face_count = (size_t)1 << 62;
+    CLAIM(refused(palpate_object_from_points(&points, kScene, &object), "faces: expected a count"));
     points           = points_of(rows);
     points.stiffness = NULL;
     CLAIM(refused(palpate_object_from_points(&points, kScene, &object), "0")); /* a uniform stiffness of 0 */
@@ -296,6 +298,7 @@ static void try_runs(const palpate_object* object)
     const double back[2] = {6, 5};
     CLAIM(refused(palpate_run(object, back, places, 2, 1000, force, NULL), "places"));
     CLAIM(refused(palpate_run(object, times, places, 1, 1000, force, NULL), "places"));
+    CLAIM(refused(palpate_run(object, times, places, (size_t)1 << 62, 1000, force, NULL), "count: expected"));
     free(force);
     free(again);
 }

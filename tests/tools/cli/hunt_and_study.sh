@@ -154,6 +154,7 @@ bad 'a folder twice' 'study/P01: expected each folder once' study --analyse stud
 grep -q 'share of trials' shares.svg && pass || complain 'the plot has no axis'
 sed 's/4e5/5e5/' plan.json >changed.json
 bad 'the plan has changed' 'has changed since' study changed.json --participant P01 --out study --clock virtual
+bad 'the hand presses otherwise' 'the motion of the hand' study plan.json --participant P01 --out study --clock virtual --press-depth 3mm
 bad 'a new participant with another plan' 'choose another --out' study changed.json --participant P06 --out study --clock virtual
 [ ! -e study/P06 ] && pass || complain 'a refused participant has a folder'
 cp -r study answers && sed -i 's/^P02,/P07,/' answers/P02/trials.csv

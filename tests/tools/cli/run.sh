@@ -676,6 +676,8 @@ bad 'bad input keeps the old target' 'short.ply' convert short.ply kept.ply
     code=$?
     [ $code -eq 2 ] && grep -qF 'big.npy: cannot be written: File too large' err.txt
 ) && [ ! -e big.npy ] && passed=$((passed + 1)) || complain "a limit on the size of files: $(cat err.txt)"
+(ulimit -f 150 && "$palpate" run sample:sheet --points 2000 --cells 16 --solver host --foundation 1MPa/m --hand press --clock virtual --seconds 2 --record stops --json >out.txt 2>err.txt)
+grep -q '"stopped": ".*File too large' out.txt && passed=$((passed + 1)) || complain "the JSON of a session does not say why its recording stopped: $(grep -A8 recorded out.txt) $(cat err.txt)"
 # Without memory: the sentence, and no exit handler, where a driver may wait for its own lock. No sanitizer runs so.
 (
     ulimit -v 400000 && LD_DEBUG=files "$palpate" solve plate.json --cells 512 --solver reference >out.txt 2>err.txt

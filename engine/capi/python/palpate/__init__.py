@@ -472,8 +472,8 @@ class Object:
         """Predicts what is noticed along a straight path over the object; it takes some seconds.
 
         place: (3,) its middle [m]; None: the scene's. side: (3,) from where the finger comes. direction: (3,) along the
-        surface; None: the east of the map. reach: to either side [m]; 0: a third of the patch window, or of the object that it spans. places: with a
-        finger at rest, 3 to 1001.
+        surface; None: the east of the map. reach: to either side [m]; 0: a third of the patch window, or of the object
+        that it spans. places: with a finger at rest, 3 to 1001.
         """
         middle, outward, way = _three(place, "place"), _three(side, "side"), _three(direction, "direction")
         asked = _Path(place=_address(middle), from_=_address(outward), direction=_address(way),
