@@ -188,13 +188,14 @@ std::unique_ptr<HidPort> openUdp(const BridgeLine& line)
         error != 0)
         throw HidRefused(name + ": " + gai_strerror(error), "name an address of this machine");
     const std::unique_ptr<addrinfo, void (*)(addrinfo*)> all(found, freeaddrinfo);
-    const int fd = socket(found->ai_family, found->ai_socktype | SOCK_CLOEXEC, found->ai_protocol);
-    if (fd < 0 || bind(fd, found->ai_addr, found->ai_addrlen) != 0) {
-        const std::string why = std::strerror(errno);
+    std::string                                          why;
+    for (const addrinfo* each = found; each; each = each->ai_next) {
+        const int fd = socket(each->ai_family, each->ai_socktype | SOCK_CLOEXEC, each->ai_protocol);
+        if (fd >= 0 && bind(fd, each->ai_addr, each->ai_addrlen) == 0) return std::make_unique<UdpPort>(fd, name);
+        why = std::strerror(errno);
         if (fd >= 0) close(fd);
-        throw HidRefused(name + ": " + why, "take another port, or end the program that has it");
     }
-    return std::make_unique<UdpPort>(fd, name);
+    throw HidRefused(name + ": " + why, "take another port, or end the program that has it");
 }
 
 std::unique_ptr<HidPort> openSerial(const BridgeLine& line)
@@ -274,7 +275,9 @@ std::optional<BridgeLine> parseBridgeLine(std::string_view text)
     const std::string_view digits  = colon == std::string_view::npos ? address : address.substr(colon + 1);
     BridgeLine             line{BridgeLine::Kind::udp,
                     std::string(colon == std::string_view::npos ? "127.0.0.1" : address.substr(0, colon))};
-    const auto             number = std::from_chars(digits.data(), digits.data() + digits.size(), line.port);
+    if (line.place.starts_with('[') && line.place.ends_with(']'))
+        line.place = line.place.substr(1, line.place.size() - 2);
+    const auto number = std::from_chars(digits.data(), digits.data() + digits.size(), line.port);
     if (number.ec != std::errc() || number.ptr != digits.data() + digits.size() || line.port == 0 || line.place.empty())
         throw Error("bridge: expected udp:PORT or udp:HOST:PORT, found \"" + std::string(text) + "\"");
     return line;

@@ -237,7 +237,8 @@ typedef struct palpate_hand {
                              next one may count as a jump: more than 1 mm and 4 m/s since the last takes the force */
     uint32_t buttons;     /**< bit 0, held for 20 ms, clears a fault of the governor; that of the scene's clutch_button
                              takes the force and holds the tool at answer.proxy while it is down */
-    uint32_t absent;      /**< not 0: the device has no position now; no force flows */
+    uint32_t absent;      /**< not 0: the device has no position now; no force flows, and the tool stays where it was.
+                             Where nobody's hand has been known to be nothing is touched */
 } palpate_hand;
 
 /** \name Bits of palpate_answer.flags

@@ -35,10 +35,11 @@ public:
         if (isHeld_ && isPlaced_) {
             offset_        = tool_ - device;
             state.velocity = {};
+        } else {
+            tool_ = device + offset_;
         }
-        state.position = device + offset_;
-        tool_          = state.position;
-        isPlaced_      = true;
+        state.position = tool_; // to the bit while it is held, as its replay has it
+        isPlaced_      = isPlaced_ || (state.homed && state.fault == DeviceFault::none);
         return state;
     }
 

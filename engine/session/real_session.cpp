@@ -180,7 +180,7 @@ const ProxyContact& RealSession::held(double time, const Hand& hand) noexcept
         nothing_.touch.point = hand.position;
         return nothing_;
     }
-    const ProxyContact& contact = contact_.tick(time, hand.position, force_.lean());
+    const ProxyContact& contact = contact_.tick(time, hand, force_.lean());
     publish(contact);
     return contact;
 }
@@ -194,7 +194,7 @@ void RealSession::proxyThread()
         metronome.wait();
         if (!shared_.hand.take()) continue;
         const TimedHand&    newest = *shared_.hand.held();
-        const ProxyContact& held   = contact_.tick(newest.time, newest.hand.position, newest.lean);
+        const ProxyContact& held   = contact_.tick(newest.time, newest.hand, newest.lean);
         publish(held);
         shared_.held.draft() = held;
         shared_.held.publish();

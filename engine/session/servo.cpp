@@ -5,6 +5,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/session/clutch.h"
+
 namespace palp {
 namespace {
 
@@ -55,10 +57,19 @@ ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std
     isFree_ = false;
 }
 
-const ProxyContact& ContactHalf::tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept
+const ProxyContact& ContactHalf::tick(double time, const Hand& hand, const glm::dvec3& lean) noexcept
 {
-    const ProxyState& proxy = proxy_.step(hip + lean);
-    isFree_                 = isFree_ || (!proxy.touching && proxy.position == hip + lean);
+    if (hand.isThere()) hip_ = hand.position;
+    isKnown_ = isKnown_ || hand.isThere();
+    if (!isKnown_) {
+        held_.touch.time  = time;
+        held_.touch.point = hand.position;
+        held_.behind      = !isFree_;
+        return held_;
+    }
+    const glm::dvec3  place = hip_ + lean;
+    const ProxyState& proxy = proxy_.step(place);
+    isFree_                 = isFree_ || (!proxy.touching && proxy.position == place);
     motion_.add(time, proxy.position);
     glm::dvec3 velocity = motion_.velocity();
     if (proxy.touching) velocity -= glm::dot(velocity, proxy.normal) * proxy.normal; // of the way down to the surface
@@ -82,7 +93,7 @@ double AnswerPeriod::add(std::uint64_t sequence, double time) noexcept
 ForceHalf::ForceHalf(const Scene& scene, const HapticDeviceInfo& limits, const HomogeneousLaw* first)
     : law_(scene.patch.forceLaw), thickness_(scene.material.thickness), linear_(scene.material.isLinear()),
       ofScene_(scene.material.stiffening), stiffening_(ofScene_), patchPeriod_(1 / scene.deformationRate),
-      scale_(scene.workspaceScale),
+      scale_(scene.workspaceScale), resetsByClutch_(clutchBit(scene) == kOperatorsButton),
       compliance_(scene.complianceLaw, first, longestWithoutTable(1 / scene.deformationRate) + kFading),
       relaxing_(scene.material.relaxation, scene.patch.footprintRadius), governor_(governorOf(scene, limits))
 {
@@ -263,7 +274,7 @@ double ForceHalf::tableOverdue(const TickTime& now, bool touching, const PatchUp
 TickRecord ForceHalf::tick(const TickTime& now, const Hand& hand, const ProxyContact& held,
                            const PatchUpdate* newest) noexcept
 {
-    const bool press = hand.homed && hand.device == DeviceFault::none && (hand.buttons & kOperatorsButton) != 0;
+    const bool press = hand.isThere() && ((hand.buttons & kOperatorsButton) != 0 || (resetsByClutch_ && hand.clutched));
     pressed_         = press ? pressed_ + 1 : 0;
     if (pressed_ == kPressTicks) governor_.reset();
 
@@ -309,7 +320,7 @@ GovernorInput ForceHalf::governorInput(const TickTime& now, const Hand& hand, co
     in.force           = want.force;
     in.position        = hand.position / scale_;
     in.velocity        = hand.velocity / scale_;
-    in.homed           = hand.homed && hand.device == DeviceFault::none;
+    in.homed           = hand.isThere();
     in.inBox           = hand.inBox;
     in.letGo           = hand.letGo;
     in.clutched        = hand.clutched;

@@ -69,6 +69,9 @@ struct Hand {
     bool          letGo    = false;        ///< see GovernorInput
     bool          clutched = false;        ///< likewise
 
+    /// Returns whether its place is known.
+    [[nodiscard]] bool isThere() const noexcept { return homed && device == DeviceFault::none; }
+
     /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
     [[nodiscard]] std::uint32_t bits() const noexcept
     {
@@ -119,11 +122,11 @@ public:
     ///                begins in free space
     ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from = {});
 
-    /// Runs one tick of the proxy.
+    /// Runs one tick of the proxy. A hand that is not there moves nothing: the proxy is first placed where a hand is
+    /// known to be, since that place decides on which side of the surface it is.
     /// \param time  [s] of the session's clock
-    /// \param hip   [m]
     /// \param lean  [m] the latest of the force, ForceHalf::lean()
-    const ProxyContact& tick(double time, const glm::dvec3& hip, const glm::dvec3& lean) noexcept;
+    const ProxyContact& tick(double time, const Hand& hand, const glm::dvec3& lean) noexcept;
 
     [[nodiscard]] const Touch& touch() const noexcept { return held_.touch; }
 
@@ -131,7 +134,9 @@ private:
     Proxy        proxy_;
     RecentMotion motion_;
     ProxyContact held_;
-    bool         isFree_ = true; ///< the hand was in free space
+    glm::dvec3   hip_{};           ///< [m] where the hand was last
+    bool         isKnown_ = false; ///< it was somewhere
+    bool         isFree_  = true;  ///< it was in free space
 };
 
 /// The time between two answers of a device.
@@ -157,7 +162,8 @@ private:
 class ForceHalf {
 public:
     /// The device's first button. Held down for 20 ms it resets the governor's fault, because the person who holds the
-    /// device is its operator; a shorter press does not count, because packets may be corrupt.
+    /// device is its operator; a shorter press does not count, because packets may be corrupt. Where it is the clutch
+    /// too, holding that resets a fault.
     static constexpr std::uint32_t kOperatorsButton = 1;
     static constexpr int           kPressTicks      = 20;
 
@@ -228,6 +234,7 @@ private:
     double            plateCompliance_ = 0; ///< c in this tick [m/N]
     double            patchPeriod_;         ///< of the deformation [s]
     double            scale_;               ///< metres of the scene per metre of the device [1]
+    bool              resetsByClutch_;      ///< the operator's button is the scene's clutch
     AnswerPeriod      answers_;
     ComplianceTracker compliance_;
     LateralLean       lean_;
@@ -262,7 +269,7 @@ public:
 
     TickRecord tick(const ForceHalf::TickTime& now, const Hand& hand, const PatchUpdate* newest) noexcept
     {
-        return force_.tick(now, hand, contact_.tick(now.time, hand.position, force_.lean()), newest);
+        return force_.tick(now, hand, contact_.tick(now.time, hand, force_.lean()), newest);
     }
 
     [[nodiscard]] const Touch&           touch() const noexcept { return contact_.touch(); }

@@ -35,7 +35,8 @@ HapticDeviceInfo withUnknowns(HapticDeviceInfo device)
     return device;
 }
 
-/// Gives the tool its place in place of the hand's, which differ by what the hand went while the clutch was held.
+/// Gives the tool its place in place of the hand's, which differ by what the hand went while the clutch was held; one
+/// that is not there holds the tool, too.
 void holdByClutch(Hand& hand, Clutch& clutch) noexcept
 {
     HapticState state;
@@ -43,6 +44,8 @@ void holdByClutch(Hand& hand, Clutch& clutch) noexcept
     state.velocity = hand.velocity;
     state.buttons  = hand.buttons;
     state.clutched = hand.clutched;
+    state.homed    = hand.homed;
+    state.fault    = hand.device;
     state          = clutch.step(state, false);
     hand.position  = state.position;
     hand.velocity  = state.velocity;
@@ -64,7 +67,7 @@ struct SteppedSession::Impl {
     DeformationLoop                          loop;
     std::optional<Recording>                 recording;
     TickRecord                               last{};
-    Hand                                     hand{}; ///< the last good one
+    Hand                                     hand{}; ///< the last one that was there
     Clutch                                   clutch;
     VelocityFilter                           moved{15e-3}; ///< [s] as drivers of devices take it
     double                                   time = 0;     ///< [s] of the last tick
@@ -116,25 +119,25 @@ const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
     constexpr double kNominal = 1e-3; // [s] of the first tick, and of one whose time is not good
     Impl&            s        = *impl_;
     const bool       rises    = std::isfinite(time) && (!s.begun || time > s.time);
-    const bool       good     = rises && isGood(given);
-    const double     dt       = (s.begun && rises ? time - s.time : kNominal) + s.sleep.slept();
+    const bool       good = rises && isGood(given), isThere = good && given.isThere();
+    const double     dt = (s.begun && rises ? time - s.time : kNominal) + s.sleep.slept();
     if (rises) s.time = time;
     s.begun = true;
     ++s.steps;
-    Hand hand = good ? given : s.hand;
-    if (good) {
+    Hand hand = isThere ? given : s.hand;
+    if (isThere) {
         if (ForceGovernor::isJump(glm::length(given.position - s.hand.position), dt)) s.moved.restart();
         s.hand = given;
         s.moved.add(s.time, given.position);
         if (given.velocity == glm::dvec3(0)) hand.velocity = s.moved.velocity(); // many a host has none
+    } else { // no place of a hand, by which a tool could move
+        hand.velocity = {};
+        hand.homed    = given.homed;
+        hand.device   = good ? given.device : DeviceFault::kinematics;
     }
-    if (!good) hand.device = DeviceFault::kinematics;
     hand.answerTime = s.time;
     hand.sequence   = s.steps;
-    if (hand.device == DeviceFault::none)
-        holdByClutch(hand, s.clutch);
-    else if (clutchBit(s.scene) != 0)
-        hand.position = s.last.hip; // no place of a hand, by which a tool could move
+    holdByClutch(hand, s.clutch);
     s.last   = s.servo.tick({s.time, dt}, hand, s.loop.newest(s.servo.tableInUse()));
     s.zeroed = !good || (s.zeroed && s.last.force != glm::dvec3(0));
     if (s.zeroed) s.last.force = {};

@@ -88,8 +88,10 @@ TEST(BridgeLines, AreNamedByTheirKind)
     EXPECT_EQ(parseBridgeLine("udp:5005")->port, 5005);
     EXPECT_EQ(parseBridgeLine("udp:5005")->place, "127.0.0.1");
     EXPECT_EQ(parseBridgeLine("udp:0.0.0.0:5005")->place, "0.0.0.0");
+    EXPECT_EQ(parseBridgeLine("udp:[::1]:5005")->place, "::1") << "as other addresses are written";
     EXPECT_EQ(parseBridgeLine("serial:/dev/ttyACM0")->place, "/dev/ttyACM0");
-    for (const char* text : {"udp:", "udp:x", "udp:70000", "udp::1", "udp:5005x", "serial:", "udp", "serial", "tcp:5"})
+    for (const char* text :
+         {"udp:", "udp:x", "udp:70000", "udp::1", "udp:[]:1", "udp:5005x", "serial:", "udp", "serial", "tcp:5"})
         EXPECT_THROW((void)parseBridgeLine(text), Error) << text;
 }
 

@@ -1,9 +1,12 @@
 #include "engine/session/stepped_session.h"
 
+#include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <memory>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -103,6 +106,84 @@ TEST(SteppedSession, TheScenesClutchHoldsTheTool)
     EXPECT_NEAR(session.step(time += 1e-3, lost).hip.z, 4.9e-3, 1e-12);
     EXPECT_NEAR(tick(5.8e-3, 2).hip.z, 4.9e-3, 1e-12);
     EXPECT_NEAR(tick(5.7e-3, 0).hip.z, 4.8e-3, 1e-12);
+}
+
+/// What a hand feels, and where, whose first ticks are a tracker's that has not found it yet.
+class AbsentHand : public testing::Test {
+protected:
+    /// Goes to a place and stays there; returns the last tick.
+    TickRecord go(SteppedSession& session, const glm::dvec3& to, double seconds)
+    {
+        const glm::dvec3 from = at_;
+        TickRecord       last;
+        for (double t = 0; t < seconds; t += 1e-3) {
+            at_  = glm::mix(from, to, std::min(1.0, 2 * t / seconds));
+            last = session.step(time_ += 1e-3, {.position = at_});
+            std::this_thread::sleep_for(std::chrono::microseconds(200)); // for the plate's thread
+        }
+        return last;
+    }
+
+    /// Says for some ticks that there is no hand.
+    void lose(SteppedSession& session, const glm::dvec3& said, int ticks)
+    {
+        Hand lost{.position = said};
+        lost.device = DeviceFault::silent;
+        for (int n = 0; n < ticks; ++n) EXPECT_EQ(session.step(time_ += 1e-3, lost).force, glm::dvec3(0));
+    }
+
+    glm::dvec3 at_{0, 0, 6e-3}; ///< [m]
+    double     time_ = 0;       ///< [s]
+};
+
+TEST_F(AbsentHand, IsNowhereUntilItIsFound)
+{
+    const auto own = std::make_shared<const LoadedCloud>(ownPoints());
+    enum class First { there, absent, nonsense, clutch };
+    for (const First first : {First::there, First::absent, First::nonsense, First::clutch}) {
+        const Scene    scene = ownScene(first == First::clutch ? R"(, "clutch_button": 2)" : "");
+        SteppedSession session(objectOf(*own, scene).object, scene, {}, own);
+        at_ = {0, 0, 6e-3};
+        if (first == First::nonsense)
+            session.step(time_ += 1e-3, {.position = glm::dvec3(std::nan(""))});
+        else if (first != First::there) // below the sheet, where nobody's hand is
+            lose(session, first == First::clutch ? at_ : glm::dvec3(0, 0, -5e-3), 5);
+        go(session, at_, 0.5);
+        const TickRecord pressed = go(session, {0, 0, -1e-3}, 0.6);
+        EXPECT_GT(pressed.force.z, 0.05) << int(first);
+        EXPECT_GT(pressed.normal.z, 0.5) << int(first) << ": the side from which it came";
+    }
+}
+
+TEST_F(AbsentHand, ThatIsLostAndFoundIsOnTheSideWhereItWas)
+{
+    const auto     own   = std::make_shared<const LoadedCloud>(ownPoints());
+    const Scene    scene = ownScene();
+    SteppedSession session(objectOf(*own, scene).object, scene, {}, own);
+    go(session, at_, 0.5);
+    lose(session, {0, 0, -20e-3}, 300);
+    at_ = {0, 0, 5e-4};
+    go(session, {0, 0, 3e-3}, 0.6);
+    const TickRecord pressed = go(session, {0, 0, -1e-3}, 0.6);
+    EXPECT_GT(pressed.force.z, 0.05);
+    EXPECT_GT(pressed.normal.z, 0.5);
+}
+
+/// The first button is the clutch: held down after a fault it resets that too, as every first button does.
+TEST_F(AbsentHand, AClutchThatIsTheFirstButtonResetsAFault)
+{
+    const auto     own   = std::make_shared<const LoadedCloud>(ownPoints());
+    const Scene    scene = ownScene(R"(, "clutch_button": 1)");
+    SteppedSession session(objectOf(*own, scene).object, scene, {}, own);
+    const auto     fault = [](const TickRecord& tick) { return static_cast<GovernorFault>(tick.faults & 0xFFU); };
+    go(session, at_, 0.1);
+    time_ += 0.5; // the host had stopped
+    ASSERT_NE(fault(session.step(time_, {.position = at_})), GovernorFault::none);
+    EXPECT_NE(fault(go(session, at_, 0.1)), GovernorFault::none);
+    TickRecord held;
+    for (int n = 0; n < 30; ++n) held = session.step(time_ += 1e-3, {.position = at_, .buttons = 1});
+    EXPECT_EQ(fault(held), GovernorFault::none);
+    EXPECT_EQ(held.force, glm::dvec3(0));
 }
 
 } // namespace

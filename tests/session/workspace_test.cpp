@@ -203,12 +203,13 @@ TEST(ScaledSession, ForcesAreNotScaled)
 /// A replay computes with the hand in the scene: the same bits come out, scale and clutch included.
 TEST(ScaledSession, AReplayGivesTheSameBits)
 {
-    const HandPath  path({{0, {5e-3, 0, 6e-3}},
-                          {2, {5e-3, 0, 6e-3}},
-                          {2.3, {5e-3, 0, -3e-3}},
-                          {2.6, {5e-3, 0, -3e-3}, 2},
-                          {2.9, {8e-3, 0, 6e-3}, 0},
-                          {6, {8e-3, 0, 6e-3}}});
+    // Places that no short number says, along all axes, so that what is carried back and forth is rounded.
+    const HandPath  path({{0, {5.1e-3, 1.3e-3, 6.7e-3}},
+                          {2, {5.1e-3, 1.3e-3, 6.7e-3}},
+                          {2.3, {5.3e-3, -0.7e-3, -3.1e-3}},
+                          {2.6, {5.3e-3, -0.7e-3, -3.1e-3}, 2},
+                          {2.9, {8.3e-3, 2.9e-3, 6.1e-3}, 0},
+                          {6, {8.3e-3, 2.9e-3, 6.1e-3}}});
     Rig             rig("haply-emulator", scaled(kWart), path, {.stiffness = 2000, .damping = 5}, 2);
     RecordedSession live, replayed;
     (void)rig.run(4, [&](const TickRecord& record) { live.records.push_back(record); });
@@ -263,6 +264,8 @@ TEST(Clutch, HoldsTheToolAndKeepsTheOffset)
 {
     Clutch      clutch(4);
     HapticState state;
+    state.homed    = true;
+    state.fault    = DeviceFault::none;
     state.position = {1, 0, 0};
     EXPECT_EQ(clutch.step(state, false).position, glm::dvec3(1, 0, 0));
     state.buttons   = 5;
@@ -295,6 +298,13 @@ TEST(Clutch, HeldFromTheStartTheToolIsWhereTheDeviceIs)
     state.position = {1, 2, 3};
     EXPECT_EQ(clutch.step(state, false).position, state.position);
     EXPECT_TRUE(clutch.isHeld());
+    state.position = {4, 5, 6};
+    EXPECT_EQ(clutch.step(state, false).position, state.position) << "nobody knows yet where the device is";
+    state.homed = true;
+    state.fault = DeviceFault::none;
+    EXPECT_EQ(clutch.step(state, false).position, state.position);
+    state.position = {7, 8, 9};
+    EXPECT_EQ(clutch.step(state, false).position, glm::dvec3(4, 5, 6));
 }
 
 /// What a user is told before the hand touches.

@@ -41,7 +41,7 @@ void TouchSession::run(const ReadyHand& readyHand, const OnView& onView)
         history_.clear();
         pointer_->begin();
         if (replay_)
-            runWith({replay_.get(), {}, replaySeconds_, replayFrom_}, onView);
+            runWith({replay_.get(), {}, kUntilEnded, replayFrom_}, onView); // its last tick ends it, however late
         else if (!settings_.hand)
             runWith({&pointer_->hand().device(), pointer_->hand().frame(), kUntilEnded}, onView);
         else if (auto hand = readyHand()) {
@@ -142,9 +142,8 @@ bool TouchSession::forceIsStopped() const
 
 void TouchSession::startReplay(const RecordedSession& session)
 {
-    replay_        = std::make_unique<ReplayDevice>(session.records, session.hand);
-    replaySeconds_ = double(session.records.size()) * 1e-3;
-    replayFrom_    = session.from;
+    replay_     = std::make_unique<ReplayDevice>(session.records, session.hand);
+    replayFrom_ = session.from;
 }
 
 void TouchSession::toggleRecording()

@@ -108,10 +108,9 @@ private:
     std::mutex                    tapMutex_; ///< of whether there is a tap, and of its markers
     std::optional<SessionTap>     tap_;      ///< of the session that runs
     std::unique_ptr<ReplayDevice> replay_;
-    double                        replaySeconds_ = 0; ///< [s]
-    WorkbenchHand                 hand_;              ///< of the session that runs, or ran last
-    std::optional<glm::dvec3>     replayFrom_;        ///< [m] SessionParts::from
-    std::optional<glm::dvec3>     heldAt_; ///< [m] where the last session with the settings' hand left its tool
+    WorkbenchHand                 hand_;       ///< of the session that runs, or ran last
+    std::optional<glm::dvec3>     replayFrom_; ///< [m] SessionParts::from
+    std::optional<glm::dvec3>     heldAt_;     ///< [m] where the last session with the settings' hand left its tool
     State                         state_    = State::neverRan;
     std::atomic<bool>             ended_    = false;
     std::atomic<bool>             clutched_ = false;
