@@ -103,7 +103,7 @@ private:
         const glm::dvec3    normal = survey_.normal(point), away = candidate.away;
         const double        height = std::abs(glm::dot(normal, away));
         if (height > kSteep * std::sqrt(candidate.distance2) + kNoisy * survey_.noise(point)) return;
-        if (survey_.sided(point) && survey_.sided(other) && glm::dot(normal, survey_.normal(other)) < 0) return;
+        if (survey_.apart(point, other)) return;
         const glm::dvec3 helper = std::abs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
         const glm::dvec3 east   = glm::normalize(glm::cross(helper, normal));
         angles_.push_back(std::atan2(glm::dot(away, glm::cross(normal, east)), glm::dot(away, east)));

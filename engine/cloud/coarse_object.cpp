@@ -37,15 +37,11 @@ private:
     void addCube(const SoftObject& dense, std::span<const std::uint32_t> cube)
     {
         const SurfaceSurvey& survey = dense.survey();
-        const glm::dvec3     first  = survey.normal(cube.front());
-        const auto           behind = [&](std::uint32_t point) {
-            return survey.sided(cube.front()) && survey.sided(point) && glm::dot(first, survey.normal(point)) < 0;
-        };
         for (const bool side : {false, true}) {
             const auto begin = std::uint32_t(members.size());
             glm::dvec3 sum{}, normal{};
             for (const std::uint32_t point : cube) {
-                if (behind(point) != side) continue;
+                if (survey.apart(cube.front(), point) != side) continue;
                 members.push_back(point);
                 sum += dense.positions()[point] - dense.positions()[cube.front()]; // small numbers: no digits are lost
                 if (survey.sided(point)) normal += survey.normal(point);

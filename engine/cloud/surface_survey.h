@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
 #include "engine/cloud/neighbour_index.h"
@@ -43,6 +44,12 @@ public:
     [[nodiscard]] bool   sided(std::size_t point) const noexcept { return sided_[ranks_[point]] != 0; } ///< see above
     /// Returns whether the side is that of a given normal.
     [[nodiscard]] bool given(std::size_t point) const noexcept { return sided_[ranks_[point]] == kGiven; }
+
+    /// Returns whether two points are known to lie on opposite sides of the object.
+    [[nodiscard]] bool apart(std::size_t one, std::size_t other) const noexcept
+    {
+        return sided(one) && sided(other) && glm::dot(normal(one), normal(other)) < 0;
+    }
 
     // The same along the curve of the index: a touch asks about hundreds of thousands of points, and neighbours then
     // lie side by side in memory.

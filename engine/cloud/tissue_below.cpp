@@ -11,6 +11,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/parallel.h"
 #include "engine/core/quantity.h"
+#include "engine/core/volume_grid.h"
 
 namespace palp {
 namespace {
@@ -59,7 +60,9 @@ Ball ballOf(const SoftObject& object, const TissueBelow& below, std::size_t n)
         throw Error(nodule(n) + "expected a ball between the sheet's underside at " + formatQuantity(sheet, "m") +
                     " and the end of the tissue at " + formatQuantity(sheet + below.depth, "m") + ", found one from " +
                     formatQuantity(one.depth - one.radius, "m") + " to " + formatQuantity(one.depth + one.radius, "m"));
-    const glm::dvec3 normal = object.survey().normal(nearest.point);
+    glm::dvec3       normal = object.survey().normal(nearest.point);
+    const glm::dvec3 out    = object.positions()[nearest.point] - object.cloud().bounds().centre();
+    if (!object.survey().sided(nearest.point) && glm::dot(normal, out) < 0) normal = -normal;
     return {object.positions()[nearest.point] - one.depth * normal, normal, one.radius, one.modulus / below.modulus};
 }
 
@@ -114,27 +117,39 @@ glm::dvec3 partOf(const Column& column, int n)
     return column.top + column.depth * (n + 0.5) / kParts * column.inward;
 }
 
-/// Returns the column below a place; where the outside is not known, that on the side where the volume has more values.
-Column columnIn(const SpatialLaw& volume, const Place& place)
+/// Returns how many parts of a column have a value of their own.
+int measuredParts(const SpatialLaw& volume, const Column& column)
 {
-    const Column inside = place.columnAlong(-place.normal), other = place.columnAlong(place.normal);
-    if (place.sided) return inside;
-    int more = 0;
-    for (int n = 0; n < kParts; ++n)
-        more += int(std::isfinite(volume(partOf(inside, n)))) - int(std::isfinite(volume(partOf(other, n))));
-    return more >= 0 ? inside : other;
+    int parts = 0;
+    for (int n = 0; n < kParts; ++n) parts += volume.volume->at(partOf(column, n)).at == VolumeGrid::At::inside;
+    return parts;
 }
 
-/// Returns the modulus of the tissue below a place over `modulus` [1], in series.
-double volumeBelow(const Place& place, const TissueBelow& below, const EnergyAbove& above, const std::string& what)
+/// Returns the modulus of a column over `modulus` [1], in series.
+double inSeries(const Column& column, const TissueBelow& below, const EnergyAbove& above, const std::string& what)
 {
-    const Column column     = columnIn(*below.volume, place);
-    double       compliance = 0;
+    double compliance = 0;
     for (int n = 0; n < kParts; ++n) {
         const double share = above(column.depth * (n + 1) / kParts) - above(column.depth * n / kParts);
         compliance += share * below.modulus / below.volume->valueAt(partOf(column, n), what);
     }
     return 1 / compliance;
+}
+
+/// Returns the modulus of the tissue below a place over `modulus` [1]; where the outside is not known, on the side
+/// where the volume has more values.
+double volumeBelow(const Place& place, const TissueBelow& below, const EnergyAbove& above, const std::string& what)
+{
+    const SpatialLaw& volume = *below.volume;
+    const Column      inside = place.columnAlong(-place.normal), other = place.columnAlong(place.normal);
+    if (place.sided) return inSeries(inside, below, above, what);
+    const int here = measuredParts(volume, inside), there = measuredParts(volume, other);
+    if (here != there) return inSeries(here > there ? inside : other, below, above, what);
+    constexpr double kSame = 1e-6; // what floats in a volume round, and more [1]
+    const double     value = inSeries(inside, below, above, what);
+    if (here > 0 && std::abs(inSeries(other, below, above, what) / value - 1) > kSame)
+        throw volume.sideUnknown(place.point, what, "");
+    return value;
 }
 
 } // namespace

@@ -35,21 +35,22 @@ struct TissueBelow {
 /// share w(z) of the energy that even tissue stores at that depth, w ~ cosh^2 (q (H - z)): what is near the skin counts
 /// most.
 ///
-///     nodule, m times as stiff, share f of the column    s = (1 - f + f m^-0.85)^(-1/0.85)   m > 1: nearly in series
-///                                                        s = 1 - f + f m                     m < 1: side by side,
-///                                                                                            because the tissue
-///     bridges it volume                                             s = 1 / int w E/E(z) dz             in series
+///     nodule, m times as stiff, share f of the column
+///         m > 1, nearly in series:                          s = (1 - f + f m^-0.85)^(-1/0.85)
+///         m < 1, side by side, for the tissue bridges it:   s = 1 - f + f m
+///     volume, in series:                                    s = 1 / int w E/E(z) dz
 ///
-/// Where the side of a point is not known, its column runs on the side of the nodule, or where the volume has values.
+/// Where the side of a point is not known, its column runs on the side of the nodule, which lies below the point next
+/// to it as seen from without, away from the middle of the object's bounds; or where the volume has more values.
 /// \param fingertip  radius a [m]; together with the sheet's thickness h it sets the decay, q = 0.45 / (h + a/2)
-/// \throws Error naming the nodule that does not lie in the tissue, or the point where the volume has no value
+/// \throws Error naming the nodule that does not lie in the tissue, or the point where the volume has no value, or as
+///         many on both sides, and others
 /// \source Vlasov and Leont'ev 1966: a foundation whose displacement decays with depth as sinh (q (H - z))
-/// \differs q and the exponent are constants, fitted to 84 axisymmetric solids computed by CalculiX 2.20 (nodules of
-/// 0.1,
-///          5 and 50 times the modulus of the tissue, radius 2.5 to 7 mm, their tops 1 to 5 mm below a sheet of 1.5 to
-///          4 mm, fingertips of 2.4 to 6 mm, layers of 15 and 25 mm): the felt stiffness over that without a nodule is
-///          right to 10 %, rms 4 %. The column without weight and in series, s = H / int E/E(z) dz, is off by 36 %, and
-///          takes a deep nodule for a shallow one
+/// \differs q and the exponent are constants, fitted to 84 axisymmetric solids computed by CalculiX 2.20 (nodules that
+///          are 0.1, 5 and 50 times as stiff as the tissue, radius 2.5 to 7 mm, their tops 1 to 5 mm below a sheet of
+///          1.5 to 4 mm, fingertips of 2.4 to 6 mm, layers of 15 and 25 mm): the felt stiffness over that without a
+///          nodule is right to 10 %, rms 4 %. The column without weight and in series, s = H / int E/E(z) dz, is off
+///          by 36 %, and takes a deep nodule for a shallow one
 [[nodiscard]] std::vector<double> foundationShape(const SoftObject& object, const TissueBelow& below, double fingertip);
 
 } // namespace palp

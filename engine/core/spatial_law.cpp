@@ -303,15 +303,19 @@ double SpatialLaw::valueAt(const glm::dvec3& p, const std::string& what) const
                 ", or check unit and axes: some programs count x and y the other way");
 }
 
+Error SpatialLaw::sideUnknown(const glm::dvec3& p, const std::string& what, const std::string& orElse) const
+{
+    return Error(file + ": expected to know on which side of " + placeOf(p, what) +
+                 " the object lies, found values on both; give the cloud normals or faces" + orElse);
+}
+
 double SpatialLaw::valueBelow(const glm::dvec3& p, const Below& below, const std::string& what) const
 {
     VolumeGrid::Sheet sheet = volume->sheetAlong(p, -below.normal, below.thickness);
     if (!below.outward) {
         const VolumeGrid::Sheet other = volume->sheetAlong(p, below.normal, below.thickness);
         if (sheet.share > 0 && sheet.share == other.share && sheet.value.value != other.value.value)
-            throw Error(file + ": expected to know on which side of " + placeOf(p, what) +
-                        " the object lies, found values on both; give the cloud normals or faces, or the law "
-                        "\"along\": \"points\"");
+            throw sideUnknown(p, what, ", or the law \"along\": \"points\"");
         if (other.share > sheet.share) sheet = other;
     }
     return sheet.share > 0 ? sheet.value.value : valueAt(p, what);

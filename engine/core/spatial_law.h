@@ -8,6 +8,7 @@
 
 #include <glm/vec3.hpp>
 
+#include "engine/core/contract.h"
 #include "engine/core/enum_names.h"
 
 namespace palp {
@@ -81,6 +82,11 @@ struct SpatialLaw {
     /// \pre a grid that has been read
     /// \throws Error as valueAt(), where no part of the sheet has a value, and where both sides have as many
     [[nodiscard]] double valueBelow(const glm::dvec3& p, const Below& below, const std::string& what) const;
+
+    /// Returns the error that says that a volume has values on both sides of a place, and so that its inside must be
+    /// told.
+    /// \param orElse  what else helps, ", or ..."
+    [[nodiscard]] Error sideUnknown(const glm::dvec3& p, const std::string& what, const std::string& orElse) const;
 };
 
 /// What becomes of the files that a law names.

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <mutex>
-#include <set>
 #include <string>
 
 #include "engine/contact/contact.h"
@@ -16,15 +16,18 @@
 namespace palp {
 namespace {
 
-/// Returns the first point in each cube of the lattice that holds points.
-std::vector<std::uint32_t> onePerCube(const PointCloud& cloud, double edge)
+/// Returns the first point in each cube of the lattice that holds points, and the first of the other side of a thin
+/// object.
+std::vector<std::uint32_t> onePerCube(const SoftObject& object, double edge)
 {
-    std::set<std::array<std::int64_t, 3>> taken;
-    std::vector<std::uint32_t>            places;
-    for (std::size_t n = 0; n < cloud.size(); ++n) {
-        const glm::dvec3 p = (cloud.positions()[n] - cloud.bounds().low) / edge;
-        if (taken.insert({std::int64_t(p.x), std::int64_t(p.y), std::int64_t(p.z)}).second)
-            places.push_back(std::uint32_t(n));
+    std::map<std::array<std::int64_t, 3>, std::vector<std::uint32_t>> taken;
+    std::vector<std::uint32_t>                                        places;
+    for (std::uint32_t n = 0; n < object.size(); ++n) {
+        const glm::dvec3 p    = (object.positions()[n] - object.cloud().bounds().low) / edge;
+        auto&            here = taken[{std::int64_t(p.x), std::int64_t(p.y), std::int64_t(p.z)}];
+        if (!std::ranges::all_of(here, [&](std::uint32_t other) { return object.survey().apart(n, other); })) continue;
+        here.push_back(n);
+        places.push_back(n);
     }
     return places;
 }
@@ -38,16 +41,19 @@ double edgeFor(const SoftObject& object, std::size_t wanted)
     return spacing * std::sqrt(std::max(1.0, kAskew * double(object.size()) / double(wanted)));
 }
 
-/// Returns the felt stiffness at all points from that at the places.
-std::vector<double> between(const PointCloud& cloud, const FeltMap& map, double edge)
+/// Returns the felt stiffness at all points from that at the places on their side of the object, unless none is near.
+std::vector<double> between(const SoftObject& object, const FeltMap& map, double edge)
 {
-    constexpr std::size_t   kNearest = 8; // the weight of a ninth would be negligible
+    constexpr std::size_t   kNearest = 8, kSides = 2; // the weight of a ninth would be negligible
     std::vector<glm::dvec3> places;
-    for (const std::uint32_t place : map.places) places.push_back(cloud.positions()[place]);
+    for (const std::uint32_t place : map.places) places.push_back(object.positions()[place]);
     const NeighbourIndex index(places);
     std::vector<double>  felt;
-    for (const glm::dvec3& p : cloud.positions()) {
-        const auto   near  = index.nearest(p, kNearest);
+    for (std::size_t point = 0; point < object.size(); ++point) {
+        const auto there = [&](const Neighbour& n) { return object.survey().apart(point, map.places[n.point]); };
+        auto       near  = index.nearest(object.positions()[point], kSides * kNearest);
+        if (!std::ranges::all_of(near, there)) std::erase_if(near, there);
+        near.resize(std::min(near.size(), kNearest));
         const double width = std::max(edge / 2, near.front().distance); // wide enough for a lone place
         double       sum = 0, weights = 0;
         for (const Neighbour& n : near) {
@@ -84,7 +90,7 @@ FeltMap mapOf(const SoftObject& object, const std::vector<std::uint32_t>& places
     std::vector<double> sorted = map.stiffness;
     std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(sorted.size() / 2), sorted.end());
     map.typical  = sorted[sorted.size() / 2];
-    map.atPoints = between(object.cloud(), map, edge);
+    map.atPoints = between(object, map, edge);
     return map;
 }
 
@@ -95,7 +101,7 @@ FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::si
 {
     PALP_EXPECT(wanted >= 8, std::to_string(wanted) + " places of a map");
     const double edge   = edgeFor(object, wanted);
-    const auto   places = onePerCube(object.cloud(), edge);
+    const auto   places = onePerCube(object, edge);
     FeltTouches  felt;
     for (std::size_t n = 0; n < places.size(); ++n) {
         if (onStep) onStep(n, places.size());
@@ -117,7 +123,7 @@ FeltMap feltMapEvery(const SoftObject& object, const PatchSettings& settings, do
     if (!(std::isfinite(edge) && edge > 0))
         throw Error("map: expected a spacing above 0 m, found " + std::to_string(edge));
     const double cube   = std::max(edge, kFinest * object.cloud().bounds().diagonal());
-    const auto   places = onePerCube(object.cloud(), cube);
+    const auto   places = onePerCube(object, cube);
     const auto   at     = [&](std::size_t n) { return touchAt(object, object.positions()[places[n]], {}, cube); };
     return mapOf(object, places, feltTouches(object, settings, places.size(), at, solver), cube);
 }

@@ -20,7 +20,8 @@ struct FeltMap {
     std::string                takeover;    ///< as FeltTouches has it; empty where the solver is the caller's
 };
 
-/// Touches about `wanted` places spread evenly over the cloud, one in each cube of a lattice.
+/// Touches about `wanted` places spread evenly over the cloud, one in each cube of a lattice, or one on each side of an
+/// object that is thinner than a cube.
 /// \param wanted  at least 8; fewer are touched if the cloud has fewer points
 /// \param onStep  (done, total); may be empty
 /// \throws as deform() if no place can be touched
@@ -29,7 +30,7 @@ struct FeltMap {
 [[nodiscard]] FeltMap feltMap(const SoftObject& object, const PatchSettings& settings, std::size_t wanted,
                               PlateSolver& solver, const std::function<void(std::size_t, std::size_t)>& onStep = {});
 
-/// Does the same on all cores, with one place in each cube of this edge [m] that holds points.
+/// Does the same on all cores, with one place in each cube of this edge [m] that holds points, or one on each side.
 /// \param solver  as PlateSolver takes it; every thread opens its own
 /// \throws Error if no place can be touched
 /// \thread any; starts threads

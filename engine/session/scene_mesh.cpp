@@ -127,6 +127,10 @@ void scatterOverFaces(LoadedCloud& loaded, const ScatterPlan& plan)
         report.warnings.push_back(
             std::to_string(points.degenerate) + " of " + counted(loaded.faces.size(), "triangle") +
             (points.degenerate == 1 ? " has" : " have") + " no area, so that no points lie there");
+    if (const std::size_t strays = loaded.cloud.size() - sizeOf(loaded).corners; strays > 0)
+        report.warnings.push_back(counted(strays, "point") + (strays == 1 ? " lies" : " lie") +
+                                  " in no face and cannot be felt, because points are scattered over the faces; "
+                                  "scatter = off touches the points of the file");
     loaded.normals.assign(points.normals.begin(), points.normals.end());
     const auto vertices = loaded.cloud.positions();
     loaded.mesh         = {{vertices.begin(), vertices.end()}, std::exchange(loaded.faces, {})};

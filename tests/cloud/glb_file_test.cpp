@@ -198,6 +198,10 @@ TEST(GlbFile, WhatWouldChangeTheTrianglesIsRefusedByName)
     EXPECT_TRUE(contains(refusal(with(R"("byteLength": 60})", R"("byteLength": 60, "uri": "a.bin"})")),
                          {"accessor 0", ".glb"}));
     EXPECT_TRUE(contains(refusal(with(R"({"mesh": 0})", R"({"mesh": 0, "skin": 0})")), {"node 0", "skin"}));
+    for (const char* weights : {"[0.5, 0]", "[0, -1e-3]", R"(["1"])"})
+        EXPECT_TRUE(contains(refusal(with(R"({"mesh": 0})", R"({"mesh": 0, "weights": )" + std::string(weights) + "}")),
+                             {"node 0", "weights"}));
+    EXPECT_EQ(read(with(R"({"mesh": 0})", R"({"mesh": 0, "weights": [0, 0]})")).faces, read(with("", "")).faces);
 }
 
 TEST(GlbFile, ExtensionsOfMaterialsAndTexturesChangeNoTriangle)

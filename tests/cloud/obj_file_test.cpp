@@ -26,6 +26,8 @@ TEST(ObjFile, CornersHaveAnyFormAndMayBeCountedFromTheLastVertex)
          {"f 1 2 3 4", "f 1/1 2/2 3/3 4/4", "f 1//1 2//1 3//1 4//1", "f 1/1/1 2/2/1 3/3/1 4/4/1", "f -4 -3 -2 -1",
           "f -4//7 2 -2/1 4", "f 1 2 \\\n  3 4", "f 1 2 3 4 # a remark", "fo 1 2 3 4", "\tf  1\t2 3 4\r"})
         EXPECT_EQ(obj(kFour + face + "\n").faces, expected) << face;
+    // A comment ends where its line does, also with the name of a folder.
+    EXPECT_EQ(obj("# by C:\\models\\\n" + kFour + " # and D:\\\nf 1 2 3 4\n").faces, expected);
     // -1 is the last one above, not of the file.
     EXPECT_EQ(obj("v 0 0 0\nv 1 0 0\nv 1 1 0\nf -3 -2 -1\nv 0 1 0\n").faces, (std::vector<Triangle>{{0, 1, 2}}));
 }

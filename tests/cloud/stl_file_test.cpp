@@ -52,6 +52,8 @@ TEST(StlFile, CornersAtOnePlaceBecomeOnePoint)
         EXPECT_EQ(loaded.faces, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}));
         EXPECT_EQ(loaded.report.faces, 2u);
         EXPECT_EQ(loaded.report.duplicatePositions, 0u);
+        for (const std::string& warning : loaded.report.warnings)
+            EXPECT_FALSE(contains(warning, {"one place"})) << warning;
         EXPECT_TRUE(loaded.report.lengthUnitAssumed);
         EXPECT_TRUE(loaded.report.stiffnessAssumed);
     }

@@ -6,6 +6,7 @@
 
 #include "engine/perception/perception.h"
 #include "engine/session/scene.h"
+#include "tests/perception/thin_slab.h"
 #include "tests/session/sheet_session.h"
 
 namespace palp {
@@ -32,6 +33,27 @@ TEST(FeltMap, ShowsAWartAndNothingElse)
     }
     EXPECT_GT(on, 0.95) << "more than four steps";
     EXPECT_LT(off, 0.55) << "guessing, but for the foundation's far and slight upward bow";
+}
+
+/// A touch feels the face that it touches, and so does its map, though the other face is nearer than the next place.
+TEST(FeltMap, EachFaceOfAThinBodyHasItsOwn)
+{
+    const SoftObject object = ThinSlab::object();
+    PlateSolver      solver("host");
+    for (const std::size_t wanted : {60, 1500}) { // cubes that hold both faces, and one each
+        const FeltMap map   = feltMap(object, ThinSlab().settings, wanted, solver);
+        double        least = 1e9, most = 0, lower = 1e9; // [N/m]
+        for (std::size_t n = 0; n < object.size(); ++n) {
+            const glm::dvec3 p = object.positions()[n];
+            if (!ThinSlab::isInside(p)) continue;
+            if (p.z > 0)
+                least = std::min(least, map.atPoints[n]), most = std::max(most, map.atPoints[n]);
+            else
+                lower = std::min(lower, map.atPoints[n]);
+        }
+        EXPECT_LT(most / least, 1.05) << wanted << ": a face is even";
+        EXPECT_GT(lower / most, 1.5) << wanted << ": sqrt(4) on a foundation, less what the contact gives";
+    }
 }
 
 TEST(FeltMap, WhatCannotBeTouchedIsCountedAndNoPlaceAtAllIsRefused)

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
@@ -207,7 +209,7 @@ class BelowVolume : public testing::Test {
 protected:
     /// Moduli over 60 x 60 x 30 mm about the origin, every 2 mm along z, uniform along x and y.
     template <class Modulus>
-    std::string volumeOf(const Modulus& modulus) const
+    std::string volumeOf(const Modulus& modulus, const std::string& low = "-0.03", const std::string& more = "") const
     {
         constexpr int kLayers = 31;
         std::string   header  = "{'descr': '<f8', 'fortran_order': True, 'shape': (2, 2, 31), }";
@@ -220,7 +222,8 @@ protected:
             }
         static_cast<void>(folder_.write("fat.npy", bytes));
         return R"({"depth": "15 mm", "modulus": "20 kPa", "volume": {"law": "grid", "file": ")" +
-               (folder_ / "fat.npy").string() + R"(", "origin": [-0.1, -0.1, -0.03], "spacing": [0.2, 0.2, 1e-3]}})";
+               (folder_ / "fat.npy").string() + R"(", "origin": [-0.1, -0.1, )" + low +
+               R"(], "spacing": [0.2, 0.2, 1e-3])" + more + "}}";
     }
 
     /// Shape of the foundation at the middle of a sheet that lies at z = 0 with its tissue below.
@@ -284,6 +287,60 @@ TEST_F(BelowVolume, WithoutAValueIsRefusedByPlace)
     below.replace(below.find("15 mm"), 5, "40 mm");
     EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadObject(sceneOf(kSolids[0], below))); }),
                       {"below", "the tissue below point 0", "fat.npy"}));
+}
+
+/// The sheet's points have no normals, so that only the volume knows on which side of it the tissue lies.
+TEST_F(BelowVolume, LiesOnTheSideWhereMoreWasMeasured)
+{
+    const auto shapes = [](const std::string& below) {
+        const SoftObject object = loadObject(sceneOf(kSolids[0], below)).object;
+        return std::ranges::minmax(object.foundationShape());
+    };
+    const auto even          = [](double) { return 50e3; };
+    const auto [least, most] = shapes(volumeOf(even, "-0.03", R"(, "outside": 2e3)"));
+    EXPECT_NEAR(least, 2.5, 1e-6) << "what is said of elsewhere was not measured";
+    EXPECT_NEAR(most, 2.5, 1e-6) << "the file has floats";
+    const auto [same, asMuch] = shapes(volumeOf(even, "-0.015", R"(, "outside": 5e4)"));
+    EXPECT_NEAR(same, 2.5, 1e-6) << "both sides are alike";
+    EXPECT_NEAR(asMuch, 2.5, 1e-6);
+    const std::string both =
+        volumeOf([](double z) { return z < -15e-3 ? 50e3 : 2e3; }, "-0.015", R"(, "outside": 5e4)");
+    EXPECT_TRUE(holds(refusalOf([&] { static_cast<void>(loadObject(sceneOf(kSolids[0], both))); }),
+                      {"fat.npy", "on which side of the tissue below point 0", "normals or faces"}));
+}
+
+/// Under a dome whose points have no normals a nodule lies inside, at every place.
+TEST_F(BelowVolume, ANoduleLiesInsideADomeWithoutNormals)
+{
+    constexpr int    kPoints = 12000;
+    constexpr double kRadius = 50e-3; // [m]
+    std::string      points;
+    for (int n = 0; n < kPoints; ++n) {
+        const double z = 1 - (n + 0.5) / kPoints, angle = n * std::numbers::pi * (1 + std::sqrt(5.0));
+        const double r = std::sqrt(1 - z * z);
+        points += number(1e3 * kRadius * r * std::cos(angle)) + " " + number(1e3 * kRadius * r * std::sin(angle)) +
+                  " " + number(1e3 * kRadius * z) + "\n";
+    }
+    const std::string   cloud = folder_.write("dome.xyz", points).string();
+    std::vector<double> largest;
+    for (int n = 0; n < 8; ++n) {
+        const double      z = 0.95 - 0.08 * n, r = std::sqrt(1 - z * z), angle = 2.4 * n;
+        const std::string at = number(1e3 * kRadius * r * std::cos(angle)) + "mm," +
+                               number(1e3 * kRadius * r * std::sin(angle)) + "mm," + number(1e3 * kRadius * z) + "mm";
+        const SoftObject object = loadObject(parseScene(R"({"cloud": ")" + cloud +
+                                                            R"(", "length_unit": "mm", "stiffness": {"law": "constant",
+                "value": 3e5}, "thickness": "2 mm", "foundation": "1 MPa/m", "below": {"depth": "15 mm", "modulus":
+                "20 kPa", "nodules": [{"at": ")" + at + R"(", "depth": "8.5 mm", "radius": "3.5 mm", "modulus":
+                "1 MPa"}]}})",
+                                                        "a test", "."))
+                                      .object;
+        double sum = 0; // what the nodule adds, which is more where columns draw together
+        for (const double shape : object.foundationShape()) sum += shape - 1;
+        largest.push_back(sum);
+    }
+    const auto [least, most] = std::ranges::minmax(largest);
+    EXPECT_GT(least, 0);
+    EXPECT_LT(most / least, 1.1) << "above the dome it is under 1.4 to 2 times as few points";
 }
 
 TEST(Below, TheFirstTouchAndTheTableKnowTheNodule)

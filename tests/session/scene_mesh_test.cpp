@@ -282,6 +282,19 @@ TEST_F(SceneMesh, PointsBesideAFewFacesAreACloud)
     EXPECT_EQ(loadCloud(sceneOf(text)).report.scatteredPoints, 0u) << "1677 of 1681 lie in no face";
 }
 
+TEST_F(SceneMesh, PointsInNoFaceThatVanishAreCounted)
+{
+    std::string text = gridPly(20, 5e-3, false);
+    text.replace(text.find("element vertex 441"), 18, "element vertex 443");
+    const std::size_t faces = text.find("\n4 ") + 1;
+    text.insert(faces, "0 0 0.05\n0 0 0.06\n");
+    const LoadedCloud loaded = loadCloud(sceneOf(text));
+    EXPECT_GT(loaded.report.scatteredPoints, 0u);
+    EXPECT_TRUE(std::ranges::any_of(loaded.report.warnings, [](const std::string& warning) {
+        return warning.find("2 points lie in no face and cannot be felt") != warning.npos;
+    }));
+}
+
 TEST_F(SceneMesh, AScanAsDenseAsTheFingertipNeedsStaysTheSameToTheBit)
 {
     const std::string text = gridPly(40, 0.9e-3, false);

@@ -407,13 +407,14 @@ void CloudRows::mergePlaces()
             stiffness_[place] = std::exp(std::log(stiffness_[place]) + above[place] / points[place]);
         if (!normals_.empty()) normals_[place] = directionOf(normals_[place].x, normals_[place].y, normals_[place].z);
     }
-    report_.duplicatePositions = places.size() - count;
+    if (!repeats_) report_.duplicatePositions = places.size() - count;
     positions_.resize(count);
     stiffness_.resize(count);
     for (std::vector<double>& other : others_)
         if (!other.empty()) other.resize(count);
     if (!normals_.empty()) normals_.resize(count);
     places_ = std::move(places);
+    if (repeats_) return;
     warn(counted(report_.duplicatePositions, "point", "lies", "lie") +
          " exactly where an earlier one lies; points at one place are merged");
 }

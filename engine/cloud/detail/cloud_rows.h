@@ -94,6 +94,9 @@ public:
     /// From now on a point with NaN is one that the instrument did not see, and is omitted; its number is a warning.
     void omitUnseen() noexcept { omitUnseen_ = true; }
 
+    /// From now on points at one place are one that the file repeats, of which nothing is said.
+    void expectRepeats() noexcept { repeats_ = true; }
+
     /// Adds a sentence to the warnings of the report.
     void warn(std::string sentence) { report_.warnings.push_back(std::move(sentence)); }
 
@@ -148,6 +151,7 @@ private:
     PropertyRange                                            found_;             ///< of the property, in its unit
     std::uint64_t                                            rowsRead_   = 0;
     bool                                                     omitUnseen_ = false;
+    bool                                                     repeats_    = false;
 };
 
 } // namespace palp

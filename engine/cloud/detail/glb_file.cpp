@@ -224,14 +224,28 @@ private:
             const Json&      node = element("nodes", n);
             const glm::dmat4 here = above * transformOf(node, what);
             if (has(node, "skin")) fail(what + ": expected no skin, which bends its mesh; save the mesh as it is bent");
+            failIfMorphed(node, what);
             if (has(node, "mesh")) takeMesh(index(node, "mesh", what), here);
             if (has(node, "children")) add(list(node, "children", what), here);
         }
     }
 
+    /// Refuses a shape that is mixed with others, of a mesh or a node.
+    void failIfMorphed(const Json& of, const std::string& what)
+    {
+        const Json* const weights = find(of, "weights");
+        if (!weights || !weights->is_array()) return;
+        const auto counts = [](const Json& weight) { return !weight.is_number() || weight.get<double>() != 0; };
+        if (std::ranges::any_of(*weights, counts))
+            fail(what +
+                 ": expected \"weights\" of zero, found a shape that others are mixed into; save the mesh as it is "
+                 "shown");
+    }
+
     void takeMesh(std::uint64_t n, const glm::dmat4& place)
     {
         const std::string what = "mesh " + std::to_string(n);
+        failIfMorphed(element("meshes", n), what);
         for (const Json& primitive : list(element("meshes", n), "primitives", what)) {
             constexpr std::uint64_t kLook = 64; // [bytes] that a look at a part counts as: nodes may repeat a mesh
             reader_.checkUnpacked(bytes_ += kLook);

@@ -246,7 +246,8 @@ std::vector<std::byte> unpacked(ByteReader& reader, std::uint64_t points, std::u
         reader.failAtByte("the compressed data claims " + std::to_string(packedSize) + " bytes, but only " +
                           std::to_string(reader.remaining()) +
                           " follow; the file may have been cut short while it was copied");
-    if (points > size || points * recordBytes != size)
+    // By division: many wide fields may claim more bytes than 64 bits count.
+    if (recordBytes == 0 ? size != 0 : size % recordBytes != 0 || size / recordBytes != points)
         reader.failAtByte("expected compressed data of " + std::to_string(points) + " points of " +
                           std::to_string(recordBytes) + " bytes, found " + std::to_string(size) + " bytes");
     reader.checkUnpacked(size);

@@ -35,6 +35,7 @@ public:
     Soup(const ByteReader& reader, const char* format, const CloudReadSettings& settings)
         : rows_(reader, headerOf(format), settings), faces_(reader, std::numeric_limits<std::uint32_t>::max())
     {
+        rows_.expectRepeats(); // every corner is in the file once for each of its triangles
     }
 
     CloudRows& rows() noexcept { return rows_; }
@@ -54,8 +55,7 @@ public:
 
     LoadedCloud finish()
     {
-        LoadedCloud loaded               = rows_.finish();
-        loaded.report.duplicatePositions = 0; // every corner is in the file once for each of its triangles
+        LoadedCloud loaded = rows_.finish();
         faces_.finish(loaded);
         return loaded;
     }

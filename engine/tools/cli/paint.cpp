@@ -214,7 +214,7 @@ void paint(const PaintOptions& o)
     static_cast<void>(formatToWrite(o.out)); // first, refuses a name of no known format
     Canvas canvas(o.source);
     refuseSourceAsTarget("--out", canvas.file.empty() ? o.source.name : canvas.file, o.out);
-    const SoftObject         object(canvas.loaded.cloud);
+    const SoftObject         object(canvas.loaded.cloud, {}, canvas.loaded.faces, canvas.loaded.normals);
     const PointCloud&        cloud  = object.cloud();
     const std::string        unit   = shownUnit(cloud.kind());
     const double             metres = metresPerPlainNumber(o.source, canvas.scene);
@@ -268,7 +268,9 @@ void addPaintCommand(CLI::App& app)
         ->required();
     command->add_flag("--json", options->json, "machine-readable report, SI units");
     command->footer(
-        "Only the side under the brush is painted, if the other side is three point spacings away.\n"
+        "Only the side under the brush is painted. Where faces or normals do not tell the sides, the other one has to "
+        "be\n"
+        "half a point spacing away.\n"
         "Examples:\n"
         "  palpate paint sample:palm --stroke 'at=14mm,5mm,0 radius=6mm value=2MPa' --out palm.ply\n"
         "  palpate paint scan.ply --length-unit mm --stroke 'at=12,0,30;15,2,30;18,5,29 radius=3 value=1MPa "

@@ -122,6 +122,7 @@ Json jsonOf(const AnswerSummary& s)
              {"participants", s.participants},
              {"answers", jsonOf(s.share)},
              {"right", s.right ? jsonOf(*s.right) : Json()}};
+    if (s.early) all["chosen"] = s.chosen, all["presented_first"] = jsonOf(*s.early);
     if (s.mean)
         all["rating"] = {{"mean", *s.mean},
                          {"median", *s.median},
@@ -157,8 +158,9 @@ void printText(const AnswerSummary& s)
         std::cout << ", median " << *s.median << "; rated 4 or 5: " << percent(s.share) << "\n";
     } else if (s.kind == "yes-no") {
         std::cout << "  yes: " << percent(s.share) << "\n";
-    } else if (!s.right) {
-        std::cout << "  the first: " << percent(s.share) << "\n";
+    } else if (s.early) {
+        std::cout << "  chose " << s.chosen << ": " << percent(s.share)
+                  << "; what was presented first: " << percent(*s.early) << "\n";
     }
     if (s.right) std::cout << "  right: " << percent(*s.right) << "\n";
     if (s.predicted)

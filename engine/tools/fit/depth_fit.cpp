@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "engine/cloud/material.h"
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/force/relaxing_contact.h"
@@ -107,13 +108,15 @@ struct Model {
 std::array<Parameter, 2> elasticStart(const Probe& probe)
 {
     constexpr double kMostBend = 40; // of b times the deepest depth: the force then rises within a fortieth of it
+    const double     most      = std::min(kMostBend, kMostStiffening * probe.deepest());
     double           sum = 0, squares = 0;
     for (std::size_t n = 0; n < probe.depth.size(); ++n) {
         sum += probe.depth[n] * probe.force[n];
         squares += probe.depth[n] * probe.depth[n];
     }
     const double secant = std::max(sum, 1e-9 * squares) / squares; // [N/m]
-    return {Parameter{std::log(secant / 2), std::log(1e-6 * secant), std::log(1e3 * secant)}, {1, 0, kMostBend}};
+    return {Parameter{std::log(secant / 2), std::log(1e-6 * secant), std::log(1e3 * secant)},
+            {std::min(1.0, most), 0, most}};
 }
 
 /// Returns the start for some terms: times spread over the measurement, or those of fewer terms and one between them.

@@ -20,7 +20,7 @@ double medianSize(std::vector<double> values)
     return *middle;
 }
 
-/// Returns the mean of the values about each point, weighted by a Gaussian.
+/// Returns the mean of the values about each point on its side of the object, weighted by a Gaussian.
 std::vector<double> smoothed(const std::vector<double>& values, const SoftObject& object, double deviation)
 {
     constexpr double      kReach  = 2.5; // [deviations] where the weight is 4 %
@@ -33,6 +33,7 @@ std::vector<double> smoothed(const std::vector<double>& values, const SoftObject
             object.index().gather(p, kReach * deviation, near);
             double sum = 0, weights = 0;
             for (const std::uint32_t other : near) {
+                if (object.survey().apart(n, other)) continue; // a touch feels one face of a thin body
                 const glm::dvec3 away   = object.positions()[other] - p;
                 const double     weight = std::exp(-glm::dot(away, away) / (2 * deviation * deviation));
                 sum += weight * values[other];

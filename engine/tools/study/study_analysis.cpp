@@ -34,9 +34,15 @@ struct Group {
     std::string                  first, second; ///< conditions
 };
 
+/// Returns the condition that a pair is named after first, whichever order it was presented in.
+const std::string& firstNamed(const TrialRow& row)
+{
+    return std::min(row.first, row.second);
+}
+
 std::string whatOf(const TrialRow& row)
 {
-    return row.second.empty() ? row.first : std::min(row.first, row.second) + " / " + std::max(row.first, row.second);
+    return row.second.empty() ? row.first : firstNamed(row) + " / " + std::max(row.first, row.second);
 }
 
 void count(Share& share, bool yes)
@@ -64,8 +70,13 @@ void add(Group& group, const TrialRow& row)
         count(s.share, rating >= 4);
     } else if (row.kind == "yes-no") {
         count(s.share, row.answer == "yes");
+    } else if (row.correct) {
+        count(s.share, *row.correct);
     } else {
-        count(s.share, row.correct ? *row.correct : row.answer == "first");
+        const bool early = row.answer == "first";
+        if (!s.early) s.early.emplace();
+        count(*s.early, early);
+        count(s.share, (early ? row.first : row.second) == firstNamed(row));
     }
 }
 
@@ -113,11 +124,11 @@ AnswerSummary finished(const Group& group, const Stiffnesses& stiffnesses)
     return s;
 }
 
-const char* shareOf(const AnswerSummary& s)
+std::string shareOf(const AnswerSummary& s)
 {
     if (s.kind == "rating") return "rated 4 or 5";
     if (s.kind == "yes-no") return "yes";
-    return s.right ? "right" : "the first";
+    return s.right ? "right" : "chose " + s.chosen;
 }
 
 } // namespace
@@ -145,6 +156,7 @@ std::vector<AnswerSummary> analyse(const std::vector<TrialRow>& rows, const Stif
             group.summary.what     = shownText(what);
             group.first            = row.first;
             group.second           = row.second;
+            if (!row.second.empty()) group.summary.chosen = shownText(firstNamed(row));
         }
         add(groups[place->second], row);
     }

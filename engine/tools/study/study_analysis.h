@@ -33,8 +33,10 @@ struct Share {
 struct AnswerSummary {
     std::string           task, kind, question, what; ///< what: the condition's name, or "a / b" in alphabetical order
     std::size_t           participants = 0;
-    Share                 share;          ///< of ratings of 4 and 5; of yes; of right answers (pairs without: "first")
-    std::optional<Share>  right;          ///< of right answers, if the question has one
+    Share                 share;  ///< of ratings of 4 and 5; of yes; of right answers; of pairs without: of `chosen`
+    std::string           chosen; ///< the first condition of `what`, of a pair without a right answer
+    std::optional<Share>  early;  ///< of a pair without a right answer: of what was presented first, whichever it was
+    std::optional<Share>  right;  ///< of right answers, if the question has one
     std::optional<double> mean, median;   ///< of ratings, 1 to 5 [1]
     std::optional<Interval> meanInterval; ///< 95 %; empty with a single participant
     std::optional<double>   steps,

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/cloud/material.h"
 #include "engine/force/relaxing_contact.h"
 
 namespace palp::fit {
@@ -53,6 +54,18 @@ TEST(DepthFit, AnExactPressGivesItsNumbersBack)
     EXPECT_NEAR(fit.stiffening.value / kB, 1, 1e-5);
     EXPECT_LT(fit.residual, 1e-6);
     EXPECT_EQ(fit.relaxation.count, 0u) << "no times were measured";
+}
+
+/// A press of a tenth of a millimetre whose force comes all at once: b is one that a scene takes.
+TEST(DepthFit, AShallowPressStiffensNoMoreThanAScenes)
+{
+    Probe probe;
+    for (int n = 0; n <= 10; ++n) {
+        probe.depth.push_back(1e-5 * n);
+        probe.force.push_back(n == 10 ? 1 : 0);
+    }
+    EXPECT_LE(fitProbe(probe).stiffening.value, kMostStiffening);
+    EXPECT_GT(fitProbe(probe).stiffening.value, 0.5 * kMostStiffening) << "or it shows nothing";
 }
 
 TEST(DepthFit, ALinearPressHasNoStiffeningAndTheLawsAreTold)

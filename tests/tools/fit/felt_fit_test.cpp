@@ -6,8 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/session/scene.h"
 #include "engine/perception/felt_map.h"
+#include "engine/session/scene.h"
+#include "tests/perception/thin_slab.h"
 #include "tests/session/sheet_session.h"
 
 namespace palp::fit {
@@ -15,9 +16,9 @@ namespace {
 
 /// A sheet of 2000 points whose modulus rises from 0.2 to 0.8 MPa across, and the map that is felt on it.
 struct SlowSheet {
-    Scene                 scene  = sheetScene(R"({"law": "exponential", "from": 0.2e6, "to": 0.8e6, "axis": "x"})");
-    SoftObject            object = thinned();
-    PlateSolver           solver{"host"};
+    Scene         scene  = sheetScene(R"({"law": "exponential", "from": 0.2e6, "to": 0.8e6, "axis": "x"})");
+    SoftObject    object = thinned();
+    PlateSolver   solver{"host"};
     const FeltMap map = feltMap(object, scene.patch, 400, solver);
 
     SoftObject thinned()
@@ -94,6 +95,24 @@ TEST(FeltFit, AMapThatIsTwiceAsStiffNeedsAModulusThatIsMoreThanTwiceAsHigh)
     EXPECT_LT(fit.rest, 0.01);
     EXPECT_GT(middle, std::log(2.0)) << "the plate on its foundation feels like the root of its modulus";
     EXPECT_LT(middle, std::log(4.5));
+}
+
+/// What was felt on one face is no matter of the other's, though both lie within a fingertip.
+TEST(FeltFit, TheFacesOfAThinBodyAreFittedApart)
+{
+    const ThinSlab      slab;
+    const SoftObject    object = ThinSlab::object();
+    PlateSolver         solver("host");
+    const FeltMap       map = feltMap(object, slab.settings, 400, solver);
+    const FeltFit       fit = fitFeltMap(ThinSlab::object(true), map.atPoints, {slab.settings, 400, 15, {}}, solver);
+    std::vector<double> upper, lower; // [Pa]
+    for (std::size_t n = 0; n < object.size(); ++n)
+        if (ThinSlab::isInside(object.positions()[n]))
+            (object.positions()[n].z > 0 ? upper : lower).push_back(fit.object.cloud().stiffness()[n]);
+    for (std::vector<double>* const face : {&upper, &lower}) std::ranges::sort(*face);
+    EXPECT_NEAR(upper[upper.size() / 2] / ThinSlab::kUpper, 1, 0.1);
+    EXPECT_NEAR(lower[lower.size() / 2] / ThinSlab::kLower, 1, 0.1) << "together they would be 0.4 MPa";
+    EXPECT_LT(fit.rest, 0.02);
 }
 
 TEST(FeltFit, OneOddPointIsLeftAsResidual)

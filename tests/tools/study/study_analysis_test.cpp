@@ -98,6 +98,27 @@ TEST(Analysis, PairsInEitherOrderAreOneAndThePredictionStandsBeside)
     EXPECT_FALSE(analyse(rows, {{"soft", 400}})[0].predicted);
 }
 
+/// Somebody who likes one of two every time, in whichever order they come.
+TEST(Analysis, OfPairsWithoutARightAnswerAConditionIsChosen)
+{
+    std::vector<TrialRow> rows;
+    for (int n = 0; n < 10; ++n) {
+        rows.push_back(rowOf("P01", "two-alternative", "soft", "first", {}, "stiff"));
+        rows.push_back(rowOf("P01", "two-alternative", "stiff", "second", {}, "soft"));
+    }
+    rows.push_back(rowOf("P01", "two-alternative", "stiff", "first", {}, "soft"));
+
+    const auto all = analyse(rows, {});
+
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_EQ(all[0].chosen, "soft");
+    EXPECT_EQ(all[0].share.k, 20u);
+    EXPECT_EQ(all[0].share.n, 21u);
+    EXPECT_EQ(all[0].early->k, 11u) << "orders are balanced, so that this tells of them alone";
+    EXPECT_FALSE(all[0].right);
+    EXPECT_NE(analysisSvg(all).find("chose soft"), std::string::npos);
+}
+
 TEST(Analysis, WhatATableSaysIsShownAsATerminalMayHaveIt)
 {
     TrialRow row         = rowOf("p", "rating", "\x1b[31mred", "4");
