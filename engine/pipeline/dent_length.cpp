@@ -227,11 +227,21 @@ double widthOfObject(const SoftObject& object)
     return *middle;
 }
 
-/// A width, and the rest of a sentence that begins with it.
+/// A window, and the rest of a sentence that begins with its width.
 struct Choice {
-    double      width = 0; ///< [m]
+    DentWindow  window;
     std::string why;
 };
+
+/// Returns how many cells a window has that is so many lengths of dents wide.
+int cellsFor(double lengths, int cells)
+{
+    constexpr double kFew = 16, kPerLength = 5;  // lengths that the settings' cells are for; cells to each beyond [1]
+    constexpr int    kTogether = 16, kTimes = 2; // a multiple that a multigrid can coarsen; as many cells at most
+    if (!(lengths > kFew)) return cells;
+    const double wanted = std::min(kPerLength * lengths, double(kTimes * cells));
+    return std::max(cells, kTogether * int(std::ceil(wanted / kTogether - 1e-9)));
+}
 
 /// Chooses a width where dents end by themselves, on some of the object at least.
 Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& settings, double least)
@@ -245,15 +255,21 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
                  (settings.theory == Theory::shell ? ", see the support range of palpate touch" : "");
     const std::string asked  = reach + ", ask for " + formatQuantity(lengths.window, "m");
     const std::string anyhow = "four radii of the fingertip, because ";
-    const double filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kFewestCells;
-    const double width = std::min({lengths.window, filled, carried});
-    if (lengths.window < least) return {least, anyhow + reach + ", ask for less"};
-    if (width < least) return {least, anyhow + "the object is hardly wider about its middle"};
+    const double      filled = widthOfObject(object), room = std::min(lengths.window, filled);
+    const int         cells   = cellsFor(room / lengths.typical, settings.cells);
+    const double      carried = cells * settings.footprintRadius / kFewestCells, width = std::min(room, carried);
+    const std::string finer = cells > settings.cells ? "; with " + std::to_string(cells) + " cells for " +
+                                                           std::to_string(settings.cells) + ", so that they see a dent"
+                                                     : "";
+    if (lengths.window < least) return {{least, settings.cells}, anyhow + reach + ", ask for less"};
+    if (width < least) return {{least, settings.cells}, anyhow + "the object is hardly wider about its middle"};
     if (width == carried)
-        return {width, "as wide as " + std::to_string(settings.cells) + " cells carry this fingertip, where " + asked +
-                           "; take more cells"};
-    if (width == filled) return {width, "as wide as the object is about its middle, where " + asked};
-    return {width, "as wide as " + reach + ", ask for " + (allOver ? "at nearly all places" : "on average")};
+        return {{width, cells},
+                "as wide as " + std::to_string(cells) + " cells carry this fingertip, where " + asked +
+                    "; take more cells"};
+    if (width == filled) return {{width, cells}, "as wide as the object is about its middle, where " + asked + finer};
+    return {{width, cells},
+            "as wide as " + reach + ", ask for " + (allOver ? "at nearly all places" : "on average") + finer};
 }
 
 Choice chosen(const SoftObject& object, const PatchSettings& settings)
@@ -263,16 +279,18 @@ Choice chosen(const SoftObject& object, const PatchSettings& settings)
     const Asked      asked = askedBy(object, settings, bendsOf(object, settings));
     if (asked.share > kSome) return chosenBy(asked, object, settings, least);
     if (settings.theory == Theory::plate)
-        return {settings.window,
+        return {{settings.window, settings.cells},
                 "the width without auto, because nothing ends the dents of a plate " +
                     std::string(settings.foundation > 0 ? "on so soft a foundation" : "without a foundation") +
                     ": this width decides what is felt; set a --window, a --foundation or, where the "
                     "surface is curved, --theory shell"};
     const std::string why = "because nothing ends the dents of what is curved one way, against each other or hardly at "
                             "all; see the support range of palpate touch";
-    if (asked.lengths.window >= settings.window) return {settings.window, "the width without auto, " + why};
-    if (asked.lengths.window < least) return {least, "four radii of the fingertip, " + why};
-    return {asked.lengths.window, "over which most of the surface sags by no more than a fourth, " + why};
+    if (asked.lengths.window >= settings.window)
+        return {{settings.window, settings.cells}, "the width without auto, " + why};
+    if (asked.lengths.window < least) return {{least, settings.cells}, "four radii of the fingertip, " + why};
+    return {{asked.lengths.window, settings.cells},
+            "over which most of the surface sags by no more than a fourth, " + why};
 }
 
 } // namespace
@@ -285,7 +303,7 @@ double shellLengthRoot(const Material& material) noexcept
 
 DentReach dentReach(double most, double least, const Material& material, double below) noexcept
 {
-    constexpr double kAlike = 2, kFarther = 0.7; // ratio of the curvatures; power, see DentReach [1]
+    constexpr double kAlike = 1.35, kFarther = 0.66; // ratio of the curvatures; power, see DentReach [1]
     // What is curved one way ends nothing, whichever side of it the fits' noise says that it bends to the other way.
     const double ratio = most == 0 ? 0 : least / most;
     const double perRoot =
@@ -323,16 +341,16 @@ BeyondShell beyondShell(const SoftObject& object, const PatchSettings& settings,
     return {beyond.deep / all, beyond.thick / all};
 }
 
-double dentWindow(const SoftObject& object, const PatchSettings& settings)
+DentWindow dentWindow(const SoftObject& object, const PatchSettings& settings)
 {
-    return chosen(object, settings).width;
+    return chosen(object, settings).window;
 }
 
 std::string whyDentWindow(const SoftObject& object, const PatchSettings& settings)
 {
     if (settings.windowOf != WindowOf::dent) return {};
     const Choice choice = chosen(object, settings);
-    return "auto: " + formatQuantity(choice.width, "m") + ", " + choice.why;
+    return "auto: " + formatQuantity(choice.window.width, "m") + ", " + choice.why;
 }
 
 } // namespace palp

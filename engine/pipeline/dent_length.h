@@ -46,9 +46,9 @@ inline constexpr double kBothWays = 0.1;
 struct DentReach {
     double length = 0; ///< over which it dies away [m]; infinite where neither the shell nor a foundation ends it
     /// Width of a patch window that it hardly feels the edges of, in these lengths [1]: kLocalWindow, and more where
-    /// one curvature is more than twice the other. Constant curvatures in ratios of 2, 3, 5, 8 and 16 are felt within 4
-    /// % of their limit of wide windows from 8, 11, 16, 22 and 33 lengths on, the window's corners along the principal
-    /// directions. Without a foundation it is no wider than five of the smallest radii of curvature, and than two where
+    /// one curvature is more than 1.35 times the other. Constant curvatures in ratios of 1, 1.5, 2, 3, 5 and 8 are felt
+    /// within 1.5 % of their limit of wide windows from 8, 8, 10.5, 13.5, 20 and 26 lengths on, the window's corners
+    /// along the principal directions. Without a foundation it is no wider than five of the smallest radii of curvature, and than two where
     /// the other one is next to nothing.
     double window = kLocalWindow;
 };
@@ -84,13 +84,22 @@ struct BeyondShell {
 /// \note as dentLengths()
 [[nodiscard]] BeyondShell beyondShell(const SoftObject& object, const PatchSettings& settings, double window);
 
-/// Returns how wide the patch window of WindowOf::dent is [m]: as nearly all places of the object ask for where dents
+/// A patch window, and the grid in it.
+struct DentWindow {
+    double width = 0; ///< [m]
+    int    cells = 0; ///< along it
+};
+
+/// Returns the patch window of WindowOf::dent. It is as wide as nearly all places of the object ask for where dents
 /// end by themselves, but no wider than the object fills in its middle and its cells carry the fingertip, and at least
 /// four radii of it. Where nothing ends a dent it is as the settings say, but of shells no wider than kMostSag allows
 /// at most places. What places ask for is averaged by their area, so that it goes over gradually from the one to the
 /// other, and hangs neither on how the object is turned nor on which of its points are looked at.
+///
+/// A window of more than 16 lengths of dents, as what is curved unequally both ways has, gets at least five cells to a
+/// length, if these are no more than twice the settings': what is felt is then right to 1 %.
 /// \note as dentLengths()
-[[nodiscard]] double dentWindow(const SoftObject& object, const PatchSettings& settings);
+[[nodiscard]] DentWindow dentWindow(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns in one sentence how wide that is and why; empty if the settings do not leave the window to the object.
 /// \note as dentLengths()

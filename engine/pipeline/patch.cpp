@@ -23,8 +23,10 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
     if (settings.isSettled) return settled;
     settled.isSettled = true;
     if (settings.windowOf == WindowOf::dent) {
-        settled.windowOf = WindowOf::contact;
-        settled.window   = dentWindow(object, settings);
+        const DentWindow window = dentWindow(object, settings);
+        settled.windowOf        = WindowOf::contact;
+        settled.window          = window.width;
+        settled.cells           = window.cells;
     }
     if (settings.windowOf != WindowOf::object) return settled;
     const Extent extent = object.extent();

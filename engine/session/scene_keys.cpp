@@ -447,10 +447,11 @@ std::vector<SceneKey> patchKeys()
          .read         = readHeld,
          .write        = [](const S& s) { return heldJson(s.held); }},
         countKey(
-            {.name    = "cells",
-             .help    = "cells of the plate's grid along a side of the patch window; of window object half of them lie "
-                        "along the object, and there are 256 to 512",
-             .group   = kTouch,
+            {.name  = "cells",
+             .help  = "cells of the plate's grid along a side of the patch window; a window auto that is wider than 16 "
+                      "lengths of dents has up to twice as many; of window object half of them lie "
+                      "along the object, and there are 256 to 512",
+             .group = kTouch,
              .bounds  = KeyBounds{.least = 8, .most = 1024, .multipleOf = 2},
              .control = cells},
             [](auto& s) -> auto& { return s.patch.cells; }),

@@ -247,13 +247,14 @@ TEST(CalculixShells, WhatIsCurvedBothWaysIsFeltAsStiffAsItIs)
         const double felt = feltBy(Theory::shell, Edge::supported, of) / of.stiffness - 1;
         const double flat = feltBy(Theory::plate, Edge::clamped, of) / of.stiffness - 1;
         // Measured: spheres -1.0 to 0.1 %, ellipsoids 0.5 to 0.9, slope 1.5, at the shoulder 2.5 and 4.5, spots -3 to
-        // 2; in the windows that their dents ask for the side of an ellipsoid 3.6 and 4.8, that of a cigar, which is
-        // much steeper than shallow shells, 3.6 and 7.6. Without what the whole body gives way by, and with the squeeze
+        // 2; in the windows that their dents ask for the side of an ellipsoid 2.4 and 1.8, that of a cigar, which is
+        // much steeper than shallow shells, 5.1 and 1.7, of which fits of its curvature make 1; with fewer cells and
+        // narrower windows these were 4.8, 3.6, 7.6 and 3.6. Without what the whole body gives way by, and with the squeeze
         // left out, it was 3 to 4, 3 to 5, 6 to 10 and 2 to 9; with the window's sides along the principal directions
         // ellipsoids were 1.3 to 1.6.
         std::printf("  %s, %.0f mm: shell %+.1f %%, flat plate %+.1f %%\n", std::string(of.name).c_str(),
                     1e3 * of.thickness, 100 * felt, 100 * flat);
-        const double most = of.name == "sphere" ? 0.03 : of.name == "cigar" ? 0.1 : 0.05;
+        const double most = of.name == "sphere" ? 0.03 : of.name == "cigar" ? 0.06 : 0.05;
         EXPECT_LT(std::abs(felt), most) << of.name << ", " << of.thickness << " m";
         EXPECT_GT(std::abs(flat), 0.2) << of.name << ": then nothing is shown";
     }

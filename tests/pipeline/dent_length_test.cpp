@@ -203,8 +203,9 @@ TEST(DentLength, UnlikeCurvaturesReachFarther)
 {
     const double root = shellLengthRoot(kSheet);
     EXPECT_NEAR(dentReach(20, 20, kSheet, 0).length, root / std::sqrt(20), 1e-12);
-    EXPECT_EQ(dentReach(20, 10, kSheet, 0).window, kLocalWindow);
-    EXPECT_NEAR(dentReach(-40, -10, kSheet, 0).window, kLocalWindow * std::pow(2, 0.7), 1e-9);
+    EXPECT_EQ(dentReach(20, 15, kSheet, 0).window, kLocalWindow);
+    EXPECT_NEAR(dentReach(20, 10, kSheet, 0).window, 10.5, 0.2) << "where a wide window is felt within 1.5 %";
+    EXPECT_NEAR(dentReach(-40, -10, kSheet, 0).window, kLocalWindow * std::pow(4 / 1.35, 0.66), 1e-9);
     EXPECT_NEAR(dentReach(-40, -10, kSheet, 0).length, root / std::sqrt(20), 1e-12);
     EXPECT_EQ(dentReach(40, 10, kSheet, 1e9 * std::pow(root, -4)).window, kLocalWindow) << "what lies below is alike";
     for (const double least : {0.79, 0.0, -40.0})
@@ -244,7 +245,8 @@ TEST(DentLength, OfARingIsTheSameHoweverItIsTurned)
         widths.push_back(settledFor(ring, settings).window);
         EXPECT_NE(whyDentWindow(ring, settings).find("% of it and reach far on the rest"), std::string::npos);
     }
-    EXPECT_LT(std::ranges::max(widths) / std::ranges::min(widths), 1.08) << "other 192 places";
+    EXPECT_LT(std::ranges::max(widths) / std::ranges::min(widths), 1.15)
+        << "other places, and widths that go with a power of what fits see of the weaker curvature: 1.10 to 1.13";
 }
 
 TEST(DentLength, NoWindowIsWiderThanTheObject)
@@ -269,8 +271,10 @@ TEST(DentLength, TheWindowOfAFlatBodySpansItsPolesHoweverDenseItsRimIs)
     const double atPole    = lengthOf(60e-3 * 60e-3 / 20e-3); // the radius there
     for (const bool even : {true, false}) {
         EXPECT_GT(settledFor(spheroid(even), settings).window, 0.95 * 8 * atPole) << even;
-        EXPECT_LT(settledFor(spheroid(even), settings).window, 1.05 * 8 * atPole) << even;
+        EXPECT_LT(settledFor(spheroid(even), settings).window, 1.15 * 8 * atPole)
+            << even << ": beside it a little more";
     }
+    EXPECT_NEAR(settledFor(spheroid(false), settings).window / settledFor(spheroid(true), settings).window, 1, 0.05);
     EXPECT_NEAR(dentLengths(spheroid(false), settings)->typical / dentLengths(spheroid(true), settings)->typical, 1,
                 0.15)
         << "medians of 192 places are right to a tenth; of the points alone it is 0.6";
