@@ -10,7 +10,8 @@
 packages_build='g++ cmake make libembree-dev libtbb-dev libeigen3-dev libglm-dev libcli11-dev nlohmann-json3-dev libstb-dev zlib1g-dev fonts-dejavu-core libvulkan-dev libusb-1.0-0-dev libhidapi-dev libglfw3-dev libimgui-dev pkg-config glslang-tools mesa-vulkan-drivers'
 packages_tests='python3 python3-numpy libgtest-dev libbenchmark-dev libnanoflann-dev libsuitesparse-dev libopenblas0-serial spirv-tools vulkan-validationlayers xvfb xauth xdotool libx11-dev dpkg-dev file'
 packages_package='dpkg-dev file'
-packages_gate='valgrind clang libclang-rt-14-dev chromium-common' # of a release's gate: memory, another compiler, another Vulkan driver
+# Of a release's gate: memory, another compiler, another Vulkan driver, the reference, samples/unity, the manual.
+packages_gate='valgrind clang libclang-rt-14-dev chromium-common doxygen mono-mcs groff-base'
 
 assume_yes= no_install= dry_run=
 prepare_options() {

@@ -142,7 +142,7 @@ run() { # runs one command and compares its exit code and message with the expec
         ;;
     *)
         expected "${1%%  #*}"
-        if [ "$code" -ne 0 ] && [ -n "$falcon" ]; then case $1 in *falcon*) echo "skipped, a Falcon is plugged in: $1"; return ;; esac; fi
+        if [ "$code" -ne 0 ] && [ -n "$falcon" ]; then case $1 in *falcon*) echo "skipped: a Falcon is plugged in: $1"; return ;; esac; fi
         for attempt in 1 2 3; do
             timeout 600 sh -c "$1" </dev/null >out 2>err
             found=$?
@@ -187,7 +187,7 @@ if command -v Xvfb >/dev/null 2>&1 && command -v xdotool >/dev/null 2>&1; then
     trap 'kill $server 2>/dev/null' EXIT
     read -r display <number
 else
-    echo 'no Xvfb or no xdotool: windows are not opened'
+    echo 'skipped: windows are not opened, there is no Xvfb or no xdotool'
 fi
 
 failed=0

@@ -79,7 +79,8 @@ gate_plain() {
     gate_flavour plain "$top" "$@"
     status=$?
     ctest --test-dir "$top" -N >"$top/all_tests.txt" 2>&1
-    for test in desktop display_faults driver_faults window_faults hardening mutation_operators performance_gate; do
+    for test in bridge_peer desktop display_faults driver_faults hardening mutation_operators performance_gate \
+        reference window_faults; do
         grep -q ": $test\$" "$top/all_tests.txt" || echo "skipped: there is no test $test; cmake said what it misses"
     done
     return $status

@@ -44,6 +44,8 @@ LD_LIBRARY_PATH=$libraries "$place/c program"
 python=${PALPATE_PYTHON:-/usr/bin/python3}
 if "$python" -c 'import numpy' 2>/dev/null; then
     LD_LIBRARY_PATH=$libraries PYTHONPATH=$place/moved/lib/python3/dist-packages "$python" -c 'import palpate; print(palpate.__file__)' | grep -F "$place/moved/"
+else
+    echo "skipped: the package for Python is not imported, $python has no numpy (package python3-numpy)"
 fi
 
 # The manual and the completion are those of the program.
@@ -59,6 +61,8 @@ completed() { # completed WORDS...: what bash offers for the last of them
 [ -z "$(completed palpate touch sca)" ] || { echo 'bash completes something else than files'; exit 1; }
 if command -v groff >/dev/null 2>&1; then
     groff -man -Tutf8 -ww -z "$place/palpate.1" 2>"$place/groff.log" && [ ! -s "$place/groff.log" ] || { head -5 "$place/groff.log"; exit 1; }
+else
+    echo 'skipped: the manual is not set, there is no groff (package groff-base)'
 fi
 
 # A desktop opens clouds with the window, and udev finds the rules.

@@ -10,7 +10,10 @@ rm -rf "$scratch" && mkdir -p "$scratch"
 export PYTHONDONTWRITEBYTECODE=1 PALPATE_LIBRARY="$library" PYTHONPATH="$checkout/engine/capi/python"
 "$python" "$checkout/tests/samples/signatures.py" "$checkout"
 "$python" "$checkout/tests/samples/hosts_test.py" "$checkout" "$scratch"
-command -v mcs >/dev/null && command -v mono >/dev/null || { echo 'samples/unity: not compiled, there is no mcs (package mono-mcs)'; exit 0; }
+command -v mcs >/dev/null && command -v mono >/dev/null || {
+    echo 'skipped: samples/unity is not compiled, there is no mcs (package mono-mcs)'
+    exit 0
+}
 mcs -warnaserror -out:"$scratch/game.exe" "$checkout/samples/unity/Palpate.cs" "$checkout/tests/samples/unity_stub/UnityEngine.cs"
 ln -s "$library" "$scratch/libpalpate.so" # as a game has it
 LD_LIBRARY_PATH="$scratch" mono "$scratch/game.exe"
