@@ -29,6 +29,8 @@ headings() {
 
 work=$(mktemp) || exit 1
 trap 'rm -f "$work"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 for page in "$@"; do [ -f "$page" ] || { echo "$page is not there"; exit 1; }; done
 links "$@" >"$work"
 [ -s "$work" ] || { echo 'no link was found'; exit 1; }

@@ -32,7 +32,9 @@ palpate=${palpate:-$top/build/bin/palpate}
 . "$top/tests/support/sessions.sh"
 work=$(mktemp -d)
 session=
-trap '[ -z "$session" ] || kill "$session" 2>/dev/null; rm -rf "$work"' EXIT
+trap '[ -z "$session" ] || { kill "$session" && wait "$session"; } 2>/dev/null; rm -rf "$work"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 failed=0
 complain() { failed=1; echo "FAILED: $*"; }
 

@@ -34,6 +34,8 @@ rows() {
 
 work=$(mktemp -d) || exit 1
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 notes >"$work/notes"
 rows >"$work/rows"
 [ -s "$work/notes" ] && [ -s "$work/rows" ] || { echo "no note or no row was found"; exit 1; }

@@ -5,6 +5,8 @@ set -u
 cd "$1" || exit 1
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate prepare XXXXXX") || exit 1
 trap 'rm -rf "$place"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 passed=0 failed=0
 
 stand_in() { printf '#!/bin/sh\n%s\n' "$2" >"$place/bin/$1"; chmod +x "$place/bin/$1"; }

@@ -185,6 +185,8 @@ if command -v Xvfb >/dev/null 2>&1 && command -v xdotool >/dev/null 2>&1; then
     Xvfb -displayfd 3 -noreset -screen 0 1400x900x24 3>number 2>xvfb.log & # -noreset: see tools/gui/desktop.sh
     server=$!
     trap 'kill $server 2>/dev/null' EXIT
+    trap 'exit 130' INT
+    trap 'exit 143' TERM
     read -r display <number
 else
     echo 'skipped: windows are not opened, there is no Xvfb or no xdotool'

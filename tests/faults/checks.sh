@@ -3,6 +3,8 @@
 palpate=$(realpath "$palpate") || exit 1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 cd "$work" || exit 1
 passed=0 failed=0
 pass() { passed=$((passed + 1)); }

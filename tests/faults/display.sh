@@ -26,6 +26,8 @@ finish() {
     [ -z "$server" ] || rm -f "/tmp/.X$display-lock" "/tmp/.X11-unix/X$display" # which a killed server leaves
 }
 trap finish EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 
 attempt() {
     rm -rf session-* number

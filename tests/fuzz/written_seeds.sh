@@ -6,6 +6,8 @@ palpate=$(realpath "$1") samples=$(cd "$(dirname "$0")/../../samples" && pwd)
 seeds=$(cd "$2" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 cd "$work"
 export XDG_CONFIG_HOME="$work" PALPATE_SOLVER=host
 run() { "$palpate" "$@" >out.txt 2>err.txt </dev/null || { cat err.txt; exit 1; }; }

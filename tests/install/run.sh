@@ -6,6 +6,8 @@ set -eu
 build=$1 source=$2 compiler=$3 generator=$4
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate install XXXXXX")
 trap 'rm -rf "$place"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 
 if command -v dpkg-shlibdeps >/dev/null 2>&1; then
     # gzip: it takes a tenth of the time. Ninja: what is built is packed, where Make's files would look at it all again.

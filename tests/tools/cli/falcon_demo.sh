@@ -4,6 +4,8 @@ set -u
 demo=$1 checkout=$2
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate demo XXXXXX") || exit 1
 trap 'rm -rf "$place"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 cd "$place" || exit 1
 unset FALCON_FIRMWARE
 XDG_CONFIG_HOME=$place/config # no calibration of the user's

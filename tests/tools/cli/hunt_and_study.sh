@@ -6,6 +6,8 @@ exec </dev/null # whoever runs this may leave a keyboard open, and a study would
 palpate=$1 samples=$2/samples
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate studies XXXXXX") || exit 1
 trap 'rm -rf "$place"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 cd "$place" || exit 1
 
 failed=0 passed=0

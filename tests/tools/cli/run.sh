@@ -6,6 +6,8 @@ set -u
 palpate=$1 broken=$2 sanitizer=${3-}
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate program XXXXXX") || exit 1
 trap 'chmod -R u+w "$place"; rm -rf "$place"' EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 cd "$place" || exit 1
 XDG_CONFIG_HOME=$place/config # no calibration of the user's
 export XDG_CONFIG_HOME

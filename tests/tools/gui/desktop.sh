@@ -28,6 +28,8 @@ finish() {
     kill "$server" 2>/dev/null
 }
 trap finish EXIT
+trap 'exit 130' INT
+trap 'exit 143' TERM
 
 long=120 # [s] for what takes a second: an instrumented program beside others has needed more than 20
 failed=0 solver=host # a patch takes lavapipe as long as some pictures
