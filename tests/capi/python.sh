@@ -9,7 +9,9 @@ rm -rf "$scratch" && mkdir -p "$scratch"
 export PYTHONDONTWRITEBYTECODE=1 PALPATE_LIBRARY="$library" PYTHONPATH="$checkout/engine/capi/python"
 "$python" "$checkout/tests/capi/python_test.py" "$scratch/tests"
 for script in felt_map stroke plate; do
-    "$python" "$checkout/samples/python/$script.py" "$scratch" | tee "$scratch/$script.txt"
+    "$python" "$checkout/samples/python/$script.py" "$scratch" >"$scratch/$script.txt" ||
+        { cat "$scratch/$script.txt"; exit 1; }
+    cat "$scratch/$script.txt"
     "$python" -c 'import sys, xml.dom.minidom; xml.dom.minidom.parse(sys.argv[1])' "$scratch/$script.svg"
 done
 grep -q 'order .* 2\.0[0-2]$' "$scratch/plate.txt" || { echo 'plate.py: expected second order'; exit 1; }
