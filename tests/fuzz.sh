@@ -66,14 +66,15 @@ seconds=$((minutes * 60 / count))
 [ $seconds -gt 0 ] || seconds=1
 failed=0 total=0
 for format in $formats; do
-    mkdir -p "$build/corpus/$format" "tests/fuzz/found/$format"
-    dictionary=
+    mkdir -p "$build/corpus/$format"
+    dictionary='' found=''
     if [ -f "tests/fuzz/$format.dict" ]; then dictionary="-dict=tests/fuzz/$format.dict"; fi
+    if [ -d "tests/fuzz/found/$format" ]; then found=tests/fuzz/found/$format; fi
     # A file of 8 KiB cannot ask for 64 MiB unless its header is believed. A session's description has 7.
     # shellcheck disable=SC2086
     if "$build/bin/fuzz_$format" -max_total_time="$seconds" -max_len=8192 -timeout=10 -rss_limit_mb=1024 \
         -malloc_limit_mb=64 -print_final_stats=1 -artifact_prefix="$build/$format-" $dictionary "$build/corpus/$format" \
-        "$build/seeds/$format" "tests/fuzz/found/$format" >"$build/$format.log" 2>&1; then
+        "$build/seeds/$format" $found >"$build/$format.log" 2>&1; then
         runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$build/$format.log")
         total=$((total + runs))
         printf '%s\t%s\t%s\n' "$format" "$runs" "$(git rev-parse --short HEAD 2>/dev/null)" >>"$build/executions.tsv"
@@ -83,9 +84,7 @@ for format in $formats; do
         echo "$format: FAILED, the input is kept as $build/$format-*"
         tail -n 60 "$build/$format.log"
     fi
-    rmdir "tests/fuzz/found/$format" 2>/dev/null || true
 done
-rmdir tests/fuzz/found 2>/dev/null || true
 echo "$total executions in all"
 if [ -s "$build/executions.tsv" ]; then
     echo "of all runs in this folder ($build/executions.tsv):"
