@@ -209,6 +209,9 @@ grep -q 'trial 1: nothing was felt in one of its touches' err.txt && pass || com
 [ "$(sed -n 's/.*,//; 2p' pairs/P01/trials.csv)" = 0 ] && pass || complain "the table: $(cat pairs/P01/trials.csv)"
 good 'what was not felt is left out' study --analyse pairs --json
 for word in '"trials": 1' '"left_out": 2'; do holds "$word"; done
+mv out.txt analysed.txt
+good 'in the other spelling' study --analyze pairs --json
+cmp -s out.txt analysed.txt && pass || complain "--analyze is not --analyse: $(cat out.txt)"
 good 'which is said' study --analyse pairs
 holds '2 trials left out'
 grep -q bootstrap out.txt && complain 'an interval that there is not' || pass

@@ -46,21 +46,21 @@ mv out.txt completion.txt
 [ "$(grep -c . commands.txt)" -ge 19 ] || complain "the help lists too few commands: $(cat commands.txt)"
 while read -r command; do # each option of a command's help stands in both
     grep -q "^\.SS palpate $command\$" manual.txt || complain "the manual has no command $command"
-    for option in $("$palpate" "$command" --help | sed -n 's/^  \(-.,\)*\(--[a-z][a-z-]*\).*/\2/p'); do
+    options=$("$palpate" "$command" --help | sed -n 's/^  \(-.,\)*\(--[a-z][a-z-]*\).*/\2/p')
+    [ "$(echo "$options" | wc -l)" -ge 2 ] || complain "the help of $command lists too few options: $options"
+    for option in $options; do
         grep -q "^    $command) .*[ ']$option[ ']" completion.txt || complain "no completion of $command $option"
     done
     passed=$((passed + 1))
 done <commands.txt
 good 'help' --help
 holds 'Examples:'
-for command in touch solve info materials fit convert paint render view export hunt study perceive paper devices doctor calibrate bench; do
-    # shellcheck disable=SC2086  # a command, or one within another
-    good "help of $command" $command --help; holds 'Examples:'
+while read -r command; do
+    good "help of $command" "$command" --help; holds 'Examples:'
     mv out.txt help.txt
-    # shellcheck disable=SC2086
-    good "help in other words, $command" help $command
+    good "help in other words, $command" help "$command"
     cmp -s out.txt help.txt && passed=$((passed + 1)) || complain "'help $command' is not '$command --help'"
-done
+done <commands.txt
 good 'help of bench' bench --help
 holds 'palpate bench --out bench'
 grep -qF 'palpate touch' out.txt && complain 'the help of bench has the examples of touch' || passed=$((passed + 1))
@@ -374,7 +374,8 @@ good 'a session of one tick' run scene.json --clock virtual --seconds 0.001
 holds '1 tick, 0 in contact'
 good 'replay on lavapipe' replay session --compare --solver lavapipe
 good 'the configuration' run scene.json --print-config --max-force '4 N' --flat
-holds '4 '
+grep -qE '^max_force +4 +N +flag --max-force$' out.txt && grep -qE '^theory +plate +- +flag --theory$' out.txt &&
+    passed=$((passed + 1)) || complain "the configuration: $(cat out.txt)"
 good 'the same for scripts' run scene.json --print-config --json
 bad 'a hand of the configuration' '--hand has no effect with --print-config' run scene.json --print-config --hand press
 bad 'a session is not overwritten' session run scene.json --clock virtual --seconds 0.1 --record session
@@ -803,6 +804,12 @@ JSON
     png file.png 64 48
     good 'a picture of a bare file' render bare.csv --place 0,0,0 --window 20m --cells 32 --size 64x48 --footprint-radius 2m --thickness 0.5 --out bare.png
     grep -q 'assumed metres' err.txt && grep -q '300 kPa assumed' err.txt && passed=$((passed + 1)) || complain "render does not say what it assumed: $(cat err.txt)"
+    good 'a picture without anything added' render soft.json --size 64x48 --out plain.png
+    for option in --ghost --sphere --projected '--finer 1' '--color stiffness' '--color-map cividis'; do
+        good "a picture with $option" render soft.json --size 64x48 $option --out other.png
+        cmp -s plain.png other.png && complain "the picture with $option is the one without" || passed=$((passed + 1))
+    done
+    bad 'a factor beyond memory' '--finer' render soft.json --finer 5 --out no.png
     good 'pictures along a hand' render soft.json --size 64x48 --frames 3 --hand press --seconds 0.3 --out film.png --json
     good 'pictures along a hand by its options' render soft.json --size 64x48 --frames 1 --hand press --speed 20mm/s --press-depth 0.5mm --seconds 0.3 --out slow.png
     bad 'no speed at all' '--speed' render soft.json --frames 1 --speed 0 --out no.png
@@ -825,7 +832,7 @@ JSON
     bad 'a cloud that is not there' 'nowhere.ply' render nowhere.ply --out no.png
     good 'a cloud without a place' render skin.ply --window 40mm --cells 32 --size 64x48 --out placeless.png
     png placeless.png 64 48
-    bad 'a place off the cloud' '1' render sample:skin $small --place 1,1,1 --out no.png
+    bad 'a place off the cloud' 'the place (1, 1, 1) m is ' render sample:skin $small --place 1,1,1 --out no.png
     bad 'a force of the hand' '--force' render soft.json --frames 2 --force 1N --out no.png
     bad 'no frames' '--frames' render soft.json --frames 0 --out no.png
     bad 'a folder that is not there' 'nowhere/no.png' render sample:skin $small --out nowhere/no.png
@@ -1092,14 +1099,6 @@ JSON
     holds '"hunt_seed"'
 }
 
-experiment=$(dirname "$palpate")/paper_experiment
-if [ -x "$experiment" ]; then
-    keep=$palpate palpate=$experiment
-    good 'help of the experiment' --help
-    holds 'usage:'
-    full 'help of the experiment' --help
-    palpate=$keep
-fi
 # --- what would be noticed
 good 'perceive' perceive soft.json --places 5 --reach 8mm --out path.svg --picture object.svg --picture-places 20
 holds 'a prediction, not a study'
