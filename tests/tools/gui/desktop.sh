@@ -173,6 +173,18 @@ xdotool key --window "$window" F5 sleep 0.3
 kill -TERM "$program"
 ended 'being told to end'
 
+# A window without panels: Tab, which shows and hides them, changes nothing.
+start sample:skin --points 1500 --no-panels --color plain --color-map cividis
+sleep 2
+for picture in palpate-0004.png palpate-0005.png; do
+    xdotool key --window "$window" Tab sleep 1 key --window "$window" shift+p
+    until_ 'a picture without panels' $long test -s $picture
+done
+cmp -s palpate-0004.png palpate-0005.png || fail 'there are panels, although none were asked for'
+[ -s err ] && { fail 'a window without panels complained:'; cat err; }
+kill -TERM "$program"
+ended 'being told to end without panels'
+
 # Plates and pictures on one Vulkan driver, with a hand that feels them. The environment brings the layer, to both.
 layer_arrives "$palpate"
 validate= solver=lavapipe
