@@ -1,6 +1,7 @@
 #!/bin/sh
-# Checks that every relative link and picture of the pages points at an existing file, every #part at a heading, and that the
-# tests exist that the pages name as `Suite.Case`, with * for any letters.
+# Checks that every relative link and picture of the pages points at an existing file, every #part at a heading, and that
+# the tests exist that the pages name as `Suite.Case`, or by less where there is a * for any letters or a case of five
+# words.
 # Arguments: the checkout; pages, or none for all that git or a reader would show.
 set -u
 cd "$1" || exit 1
@@ -49,13 +50,22 @@ while IFS='	' read -r page target; do
 done <"$work"
 
 grep -rhoE '^TEST(_F|_P)?\([A-Za-z0-9]+, [A-Za-z0-9]+\)' tests --include='*.cpp' | sed 's/^[A-Z_]*(\(.*\), \(.*\))$/\1.\2/' >"$work"
-set -f # no name of a test is a file's
+[ -s "$work" ] || { echo 'no test was found'; exit 1; }
 for page in "$@"; do
-    for test in $(tr -c 'A-Za-z0-9.`*/' '\n' <"$page" | sed -n 's/^`\([A-Z][A-Za-z0-9]*\.[A-Z*][A-Za-z0-9*]*\)\(\/[A-Za-z0-9]*\)\{0,1\}`.*/\1/p' | sort -u); do
-        pattern=$(echo "$test" | sed 's/\./\\./; s/\*/[A-Za-z0-9]*/g')
-        grep -qxE "$pattern" "$work" || { echo "$page names the test $test, which does not exist"; bad=1; }
-    done
-done
+    tr -c 'A-Za-z0-9.`*/' '\n' <"$page" | sed -n "s|^\`\([A-Za-z0-9.*]*\)\(/[A-Za-z0-9]*\)\{0,1\}\`.*|$page	\1|p"
+done | sort -u | awk -F '	' '
+    function words(word) { return gsub(/[A-Z][a-z0-9]+/, "", word) }
+    function exists(word,    k) {
+        if (word !~ /\*/) return word in known
+        gsub(/\./, "\\.", word); gsub(/\*/, "[A-Za-z0-9.]*", word)
+        for (k = 1; k <= tests; ++k) if (name[k] ~ "^([A-Za-z0-9]*\\.)?" word "$") return 1
+    }
+    NR == FNR { name[++tests] = $1; known[$1]; split($1, part, "."); known[part[1]]; known[part[2]]; next }
+    $2 ~ /^[A-Z][A-Za-z0-9]*\.[A-Z*][A-Za-z0-9*]*$/ || ($2 ~ /[A-Z][a-z]/ && $2 ~ /^[A-Za-z0-9]*\*[A-Za-z0-9*]*$/) ||
+    ($2 ~ /^[A-Za-z0-9]*$/ && words($2) >= 5) {
+        if (!exists($2)) { print $1 " names the test " $2 ", which does not exist"; bad = 1 }
+    }
+    END { exit bad }' "$work" - || bad=1
 
 [ $bad -eq 0 ] && echo "$links links point at existing files and headings"
 exit $bad
