@@ -1,6 +1,6 @@
 #!/bin/sh
-# Tests the two commands on machines that lack packages, root, sudo or a terminal. Substitutes first in PATH imitate them.
-# Argument: the checkout.
+# Tests the commands that install packages, on machines that lack them, root, sudo or a terminal. Substitutes first in
+# PATH imitate them. Argument: the checkout.
 set -u
 cd "$1" || exit 1
 place=$(mktemp -d "${TMPDIR:-/tmp}/palpate prepare XXXXXX") || exit 1
