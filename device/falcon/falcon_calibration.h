@@ -45,8 +45,9 @@ enum class FalconCalibrationStage : std::uint8_t {
 ///
 ///     1  home the device; lift the grip to the middle of its workspace and hold it there loosely
 ///     2  each tick: device.useCounts(countsInUse()), state = device.exchange(force), then governor.step() with
-///     step()'s force; let go as force comes on 3  at `hang`: hang the mass on the grip, wait until it hangs still,
-///     call hung() 4  at `done`: countsPerTorque()
+///        step()'s force; let go as force comes on
+///     3  at `hang`: hang the mass on the grip, wait until it hangs still, call hung()
+///     4  at `done`: countsPerTorque()
 ///
 /// The governor's 6 N bound what can be weighed. While an arm is taken for one of 0.21 kg, within 8 %, these hold a
 /// mass of 1.3 times the arm. kMostMass is held beside every arm of 0.18 to 0.39 kg, also by weak motors: with 10 000

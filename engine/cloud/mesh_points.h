@@ -53,9 +53,8 @@ struct MeshPoints {
 ///         high dimensions"; on meshes Corsini, Cignoni & Scopigno 2012, "Efficient and flexible sampling with blue
 ///         noise properties of triangular meshes"
 /// \differs no darts are thrown over the mesh as a whole: each triangle is halved, in the order of space, until one
-/// disc
-///          covers a part; parts smaller than a disc get a dart each. Memory is then read in order, and the sets are a
-///          little denser than random ones: about 0.76 points on distance^2 instead of 0.70
+///          disc covers a part; parts smaller than a disc get a dart each. Memory is then read in order, and the sets
+///          are a little denser than random ones: about 0.76 points on distance^2 instead of 0.70
 [[nodiscard]] MeshPoints scatterOver(std::span<const glm::dvec3> vertices, std::span<const Triangle> faces,
                                      const ScatterSettings& settings);
 

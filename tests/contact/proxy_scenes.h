@@ -167,7 +167,7 @@ struct Slide {
     double lag = 0, forceStep = 0;              ///< largest
 
     /// \param normal, height, lag  of the true surface below the proxy, the proxy over it, and behind where it should
-    /// be
+    ///                             be
     void add(const Touch& touch, const glm::dvec3& normal, double heightNow, double lagNow)
     {
         const double c = glm::dot(touch.state().normal, normal);

@@ -46,8 +46,7 @@ struct ColumnRange {
 /// Computes rows of A w in a part of the grid, one after the other: each call of next() gives a row.
 ///
 /// \tparam Field  has `const Real* row(int i)`: row i of the deflection, valid while rows up to i + 2 are asked for.
-/// The
-///                number before its first one may be read.
+///                The number before its first one may be read.
 template <class Real, class Field>
 class OperatorRows {
 public:

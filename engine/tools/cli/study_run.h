@@ -31,7 +31,7 @@ struct StudyProgress {
 /// Continues where the participant's table ends: touches, asks at the keyboard and appends a row, until the last trial
 /// or a pause (q, the end of the input, Ctrl-C).
 /// \throws Error if the plan or the table has changed since the participant began, CheckFailed if a device's force was
-/// stopped
+///         stopped
 [[nodiscard]] StudyProgress runStudy(const StudyRun& run, const study::StudyPlan& plan);
 
 } // namespace palp

@@ -47,7 +47,7 @@ inline constexpr double kFieldOfView = 0.52;
 /// Fits the whole of a ball into the picture, with a little room around it.
 /// \param radius  > 0 [m]
 /// \param aspect  width over height of the picture; of a part of it about `centre`, its smaller side over that height
-/// [1]
+///                [1]
 [[nodiscard]] Camera framed(const Camera& camera, const glm::dvec3& centre, double radius, double aspect);
 
 /// Changes to the other projection; objects at the target keep their size.
