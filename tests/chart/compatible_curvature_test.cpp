@@ -1,10 +1,11 @@
 #include "engine/chart/compatible_curvature.h"
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include <gtest/gtest.h>
+
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -34,11 +35,11 @@ CurvatureField made(CurvatureField field, const Number& covered)
 const Number kDisc = [](double x, double z) { return std::hypot(x, z) < 30e-3 ? 1.0 : 0.0; };
 const Number kNone = [](double, double) { return 0.0; };
 
-double largest(const NodeField& a, const NodeField& b, const NodeField& covered)
+double largestDifference(const NodeField& a, const NodeField& b, const NodeField& covered)
 {
     double most = 0;
     for (std::size_t n = 0; n < a.values().size(); ++n)
-        if (covered.values()[n] > 0) most = std::max(most, std::abs(a.values()[n] - b.values()[n]));
+        if (covered.values()[n] > 0) most = worse(most, a.values()[n] - b.values()[n]);
     return most;
 }
 
@@ -50,15 +51,15 @@ TEST(CompatibleCurvature, LeavesThatOfAHeightAsItIs)
                          fieldOf([&](double x, double z) { return 100 * 0.36 * std::cos(p * (0.8 * x + 0.6 * z)); }),
                          fieldOf([&](double x, double z) { return 100 * 0.48 * std::cos(p * (0.8 * x + 0.6 * z)); })};
     const auto     found = made(waves, kDisc);
-    EXPECT_LT(largest(found.x, waves.x, fieldOf(kDisc)), 0.05 * 64);
-    EXPECT_LT(largest(found.z, waves.z, fieldOf(kDisc)), 0.05 * 64);
-    EXPECT_LT(largest(found.xz, waves.xz, fieldOf(kDisc)), 0.05 * 64);
+    EXPECT_LT(largestDifference(found.x, waves.x, fieldOf(kDisc)), 0.05 * 64);
+    EXPECT_LT(largestDifference(found.z, waves.z, fieldOf(kDisc)), 0.05 * 64);
+    EXPECT_LT(largestDifference(found.xz, waves.xz, fieldOf(kDisc)), 0.05 * 64);
     CurvatureField even{fieldOf([](double, double) { return 20; }), fieldOf([](double, double) { return -7; }),
                         fieldOf([](double, double) { return 3; })};
     const auto     same = made(even, kDisc);
-    EXPECT_LT(largest(same.x, even.x, fieldOf(kDisc)), 2e-4 * 20) << "but for what holds a plane";
-    EXPECT_LT(largest(same.z, even.z, fieldOf(kDisc)), 2e-4 * 20);
-    EXPECT_LT(largest(same.xz, even.xz, fieldOf(kDisc)), 2e-4 * 20);
+    EXPECT_LT(largestDifference(same.x, even.x, fieldOf(kDisc)), 2e-4 * 20) << "but for what holds a plane";
+    EXPECT_LT(largestDifference(same.z, even.z, fieldOf(kDisc)), 2e-4 * 20);
+    EXPECT_LT(largestDifference(same.xz, even.xz, fieldOf(kDisc)), 2e-4 * 20);
 }
 
 /// Of kx = a z^2 there is no surface. The nearest one has k = d2 of some height, so that its kx changes along z as kxz
@@ -90,7 +91,7 @@ TEST(CompatibleCurvature, IsTheNearestThatASurfaceCanHave)
     }
     EXPECT_LT(std::abs(with), 0.02 * own)
         << "the splines do not have that height exactly, and the void counts a little";
-    EXPECT_GT(largest(found.x, torn.x, covered), 0.1 * a * 30e-3 * 30e-3) << "then nothing is shown";
+    EXPECT_GT(largestDifference(found.x, torn.x, covered), 0.1 * a * 30e-3 * 30e-3) << "then nothing is shown";
 }
 
 /// A step of the curvature is a load: at the side of the window's part that is solved it made laws of large deflections
@@ -103,8 +104,7 @@ TEST(CompatibleCurvature, GoesOnBeyondTheBorderWithoutAStep)
     double         most  = 0;
     for (int i = 1; i <= kCells; ++i)
         for (int j = 0; j <= kCells; ++j)
-            most = std::max(
-                {most, std::abs(found.x(i, j) - found.x(i - 1, j)), std::abs(found.x(j, i) - found.x(j, i - 1))});
+            most = worse(worse(most, found.x(i, j) - found.x(i - 1, j)), found.x(j, i) - found.x(j, i - 1));
     const double along = a * 2 * 33e-3 * kSize / kCells; // what the given field changes from node to node at the border
     EXPECT_LT(most, 3 * along) << "beyond, the nearest height is bent back";
 }

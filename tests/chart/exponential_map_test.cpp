@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -117,8 +118,8 @@ struct Errors {
                 continue;
             }
             const double error = distance(*map[i], piece.truth[i]);
-            largest            = std::max(largest, error);
-            relative           = std::max(relative, error / length(piece.truth[i]));
+            largest            = worse(largest, error);
+            relative           = worse(relative, error > 0 ? error / length(piece.truth[i]) : error);
             rms += error * error;
         }
         rms = std::sqrt(rms / double(std::max<std::size_t>(count, 1)));
@@ -376,7 +377,7 @@ TEST(ExponentialMap, OutsideOfTheCarefulSquareOnePredictionDoes)
         if (!all[i] || !some[i]) continue;
         const bool in  = std::max(std::abs(all[i]->x), std::abs(all[i]->z)) < careful - 2 * kSpacing;
         double&    off = in ? inside : outside;
-        off            = std::max(off, distance(*all[i], *some[i]));
+        off            = worse(off, distance(*all[i], *some[i]));
     }
     EXPECT_LT(inside, 1e-15) << "nothing outside comes before what is two spacings further in";
     EXPECT_GT(outside, 1e-7) << "else all predictions were made";

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/errors.h"
+
 namespace palp {
 namespace {
 
@@ -255,15 +257,15 @@ TEST(Resample, LogMeanJittersLessThanNearestWhileTheGridSlides)
 {
     const Scatter s      = scatter(1, 2000, 4, [](const ChartPoint& p) { return std::exp(2.3 * std::tanh(8 * p.x)); });
     const auto    jitter = [&](Resampling rule) {
-        double largest = 0, last = 0;
+        double most = 0, last = 0;
         for (int step = 0; step <= 40; ++step) {
             PatchWindow window = PatchWindow::square(0.8, 24);
             window.corner.z += 1e-3 * step; // along the level lines of D: the object itself stays the same
             const double d = resampleRigidity(window, s.positions, s.rigidities, rule, s.spacing).rigidity(14, 12);
-            if (step) largest = std::max(largest, std::abs(std::log(d / last)));
+            if (step) most = worse(most, std::log(d / last));
             last = d;
         }
-        return largest;
+        return most;
     };
     EXPECT_LT(jitter(Resampling::logMean), 0.02) << "a kernel of one spacing is smooth: 1 mm of 27 changes little";
     EXPECT_GT(jitter(Resampling::nearest), 0.05) << "else the fixture has no step to feel";
@@ -317,7 +319,7 @@ TEST(Resample, MeansSmoothAsThePointsThatTheyStandFor)
         double off = 0, offWide = 0; // [1] of the logarithm
         for (int i = 8; i < kCells - 8; ++i) {
             const double truth = std::log(whole.rigidity(i, 24));
-            off                = std::max(off, std::abs(std::log(right.rigidity(i, 24)) - truth));
+            off                = worse(off, std::log(right.rigidity(i, 24)) - truth);
             offWide            = std::max(offWide, std::abs(std::log(wide.rigidity(i, 24)) - truth));
         }
         EXPECT_LT(off, 0.04) << spacing

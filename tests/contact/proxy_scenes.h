@@ -117,8 +117,10 @@ public:
         const glm::dvec3 before = force(), pullBefore = pull();
         hip_ = hip;
         proxy_->step(kSpacing * (hip + shift_));
-        forceStep_ = glm::length(force() - before);
-        pullStep_  = glm::length(pull() - pullBefore);
+        forceStep_            = glm::length(force() - before);
+        pullStep_             = glm::length(pull() - pullBefore);
+        const glm::dvec3 both = at() + pull();
+        EXPECT_FALSE(std::isnan(both.x + both.y + both.z)) << "the largest of some numbers would not show it";
     }
 
     /// Straight to a place in ticks of at most `speed`, calling `after` after each.

@@ -13,6 +13,7 @@
 #include "engine/cloud/samples.h"
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -235,7 +236,7 @@ TEST(Pipeline, NothingOfAFreeLobeStaysBehind)
         for (std::size_t n = 0; n < lobe.cloud().size(); ++n) {
             const glm::dvec3& p = lobe.positions()[n];
             if (p.y > 0) continue; // towards the root the window ends inside the lobe
-            most = std::max(most, std::abs(moved[n] - responseAt(patch, {p.x, std::max(p.y + 4e-3, -14e-3)})));
+            most = worse(most, moved[n] - responseAt(patch, {p.x, std::max(p.y + 4e-3, -14e-3)}));
         }
         // The unrolled faces are up to 3 % longer than what they cover; the rim, within a thickness of the window, goes
         // along with its edge.

@@ -14,6 +14,7 @@
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "tests/plate/shells.h"
 #include "tests/plate/strips.h"
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -59,7 +60,7 @@ TEST(DirectShell, HasTheMatrixOfTheReference)
             EXPECT_NEAR(found->responses[n].work / truth.work, 1, 1e-6) << n;
             EXPECT_NEAR(found->responses[n].changeX, truth.changeX, 1e-6 * std::abs(truth.work / 1e-3)) << n;
             if (n == 9) {
-                EXPECT_LT(largestDifference(found->whole.deflection, w), 1e-6);
+                EXPECT_LT(errorOf(found->whole.deflection, w), 1e-6);
             }
         }
     }
@@ -107,13 +108,13 @@ TEST(DirectShell, LeavesNothingOutThatIsFelt)
         const auto      truth = felt(shell, loads[1], w);
         ASSERT_TRUE(found);
         EXPECT_NEAR(found->responses[1].work / truth.work, 1, 1e-3) << rest;
-        double most = 0, largest = 0; // on the sheet
+        double most = 0, size = 0; // on the sheet
         for (int i = 0; i <= 64; ++i)
             for (int j = 16; j <= 48; ++j) {
-                most    = std::max(most, std::abs(found->whole.deflection(i, j) - w(i, j)));
-                largest = std::max(largest, std::abs(w(i, j)));
+                most = worse(most, found->whole.deflection(i, j) - w(i, j));
+                size = std::max(size, std::abs(w(i, j)));
             }
-        EXPECT_LT(most, 2e-3 * largest) << rest;
+        EXPECT_LT(most, 2e-3 * size) << rest;
     }
 }
 
@@ -246,8 +247,7 @@ TEST(DirectShell, GoesOnWithoutSteps)
     double most = 0;
     for (int i = 1; i < 64; ++i)
         for (int j = 1; j < 64; ++j)
-            if (std::hypot(i - 32, j - 32) > 18)
-                most = std::max(most, std::abs(w(i + 1, j) - 2 * w(i, j) + w(i - 1, j)));
+            if (std::hypot(i - 32, j - 32) > 18) most = worse(most, w(i + 1, j) - 2 * w(i, j) + w(i - 1, j));
     EXPECT_LT(most, 0.06) << "sin 3 a has (3 / 18)^2 itself, 0.03; means alone 0.13";
 }
 

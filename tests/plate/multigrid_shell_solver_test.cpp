@@ -15,6 +15,7 @@
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "tests/plate/shells.h"
 #include "tests/plate/strips.h"
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -42,10 +43,10 @@ TEST(MultigridShellSolver, IsTheReferenceWhateverGridMapCurvatureAndEdges)
                                std::to_string(grid.cellsX) + " cells, " + std::to_string(lengths) + " lengths";
             EXPECT_TRUE(found.report.converged) << where;
             // Coefficients of the levels are floats, 6e-8, and the plate's condition makes some tens of it.
-            EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6) << where;
+            EXPECT_LT(errorOf(found.deflection, exact.deflection), 5e-6) << where;
             EXPECT_NEAR(found.work / dot(load, exact.deflection), 1, 2e-6) << where;
             if (stress != free) {
-                EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6) << where;
+                EXPECT_LT(errorOf(found.stressFunction, exact.stressFunction), 5e-6) << where;
             }
         }
 }
@@ -61,8 +62,8 @@ TEST(MultigridShellSolver, IsTheReferenceAtAFreeBorderOfTheObject)
     const NodeField     load  = fingertip(square(32), -12e-3, 10e-3);
     const ShellSolution exact = ReferenceShellSolver(shell).solve(load);
     const ShellAnswer   found = solved(shell, load);
-    EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6);
-    EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6);
+    EXPECT_LT(errorOf(found.deflection, exact.deflection), 5e-6);
+    EXPECT_LT(errorOf(found.stressFunction, exact.stressFunction), 5e-6);
 }
 
 TEST(MultigridShellSolver, IsTheReferenceWhereTheShellEndsWithinTheWindow)
@@ -75,8 +76,8 @@ TEST(MultigridShellSolver, IsTheReferenceWhereTheShellEndsWithinTheWindow)
         const ShellSolution exact = ReferenceShellSolver(shell).solve(load);
         const ShellAnswer   found = solved(shell, load);
         EXPECT_TRUE(found.report.converged) << cells << " cells";
-        EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6);
-        EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6);
+        EXPECT_LT(errorOf(found.deflection, exact.deflection), 5e-6);
+        EXPECT_LT(errorOf(found.stressFunction, exact.stressFunction), 5e-6);
     }
 }
 
@@ -88,17 +89,15 @@ TEST(MultigridShellSolver, StandsOnAFoundationThatVaries)
     for (int j = 0; j <= 32; ++j)
         for (int i = 0; i <= 16; ++i) shell.bending.foundationShape(i, j) = 7;
     const NodeField load = fingertip(shell.bending.grid);
-    EXPECT_LT(largestDifference(solved(shell, load).deflection, ReferenceShellSolver(shell).solve(load).deflection),
-              5e-6);
+    EXPECT_LT(errorOf(solved(shell, load).deflection, ReferenceShellSolver(shell).solve(load).deflection), 5e-6);
 }
 
 TEST(MultigridShellSolver, OfNoCurvatureIsThePlate)
 {
     const Shell     shell = shellOf(square(32), wart(10), constant(0, 0, 0), 0, Edge::clamped);
     const NodeField load  = fingertip(shell.bending.grid);
-    EXPECT_LT(
-        largestDifference(solved(shell, load).deflection, ReferencePlateSolver(shell.bending).solve(load).deflection),
-        5e-6);
+    EXPECT_LT(errorOf(solved(shell, load).deflection, ReferencePlateSolver(shell.bending).solve(load).deflection),
+              5e-6);
 }
 
 TEST(MultigridShellSolver, SolvesForLoadsOnBothFields)

@@ -7,6 +7,7 @@
 #include "engine/plate/load.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/plate/reference_values.h"
+#include "tests/support/errors.h"
 
 // Plates and loads that several tests share.
 
@@ -134,7 +135,7 @@ struct Refinement {
     [[nodiscard]] double richardsonError() const
     {
         double most = 0;
-        for (std::size_t k = 0; k < limits.size(); ++k) most = std::max(most, std::abs(richardson(k) - limits[k]));
+        for (std::size_t k = 0; k < limits.size(); ++k) most = worse(most, richardson(k) - limits[k]);
         return most / size();
     }
 
@@ -142,19 +143,18 @@ struct Refinement {
     [[nodiscard]] double error(std::size_t grid) const
     {
         double most = 0;
-        for (std::size_t k = 0; k < limits.size(); ++k) most = std::max(most, std::abs(values[grid][k] - limits[k]));
+        for (std::size_t k = 0; k < limits.size(); ++k) most = worse(most, values[grid][k] - limits[k]);
         return most / size();
     }
 
-    /// Order of the error in the spacing between a grid and the next finer one.
-    [[nodiscard]] double order(std::size_t coarser) const { return std::log2(error(coarser) / error(coarser + 1)); }
-
-    [[nodiscard]] double size() const
+    /// Order of the error in the spacing between a grid and the next finer one; 0 if the coarser one has no answer.
+    [[nodiscard]] double order(std::size_t coarser) const
     {
-        double most = 0;
-        for (const double limit : limits) most = std::max(most, std::abs(limit));
-        return most;
+        const double before = error(coarser);
+        return std::isfinite(before) ? std::log2(before / error(coarser + 1)) : 0;
     }
+
+    [[nodiscard]] double size() const { return largest(limits); }
 };
 
 } // namespace palp::reference

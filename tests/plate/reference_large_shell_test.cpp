@@ -12,6 +12,7 @@
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "engine/plate/shell_energy.h"
 #include "tests/plate/large_shells.h"
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -283,16 +284,11 @@ TEST(StretchEnergy, EndsWhereNothingIsStretched)
             if (i > 16) w(i, j) = 1e-3 * ((7 * i + 5 * j) % 11);
             phi(i, j) = std::sin(0.4 * i) * std::sin(0.7 * j);
         }
-    const auto largestOf = [](const NodeField& field) {
-        double most = 0;
-        for (const double value : field.values()) most = std::max(most, std::abs(value));
-        return most;
-    };
-    EXPECT_EQ(largestOf(stretchOf(shell, membrane, w, w)), 0);
-    EXPECT_EQ(largestOf(stretchForces(shell, membrane, phi, w)), 0);
+    EXPECT_EQ(largest(stretchOf(shell, membrane, w, w)), 0);
+    EXPECT_EQ(largest(stretchForces(shell, membrane, phi, w)), 0);
     shell.stretched = NodeField();
-    EXPECT_GT(largestOf(stretchOf(shell, membrane, w, w)), 1);
-    EXPECT_GT(largestOf(stretchForces(shell, membrane, phi, w)), 1);
+    EXPECT_GT(largest(stretchOf(shell, membrane, w, w)), 1);
+    EXPECT_GT(largest(stretchForces(shell, membrane, phi, w)), 1);
 }
 
 } // namespace

@@ -11,6 +11,7 @@
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
 #include "tests/plate/plates.h"
+#include "tests/support/errors.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -26,13 +27,6 @@ constexpr double kRichardson = 2e-3; ///< [1] allowed of the extrapolated value;
 NodeField deflection(const Plate& plate, const NodeField& force)
 {
     return ReferencePlateSolver(plate).solve(force).deflection;
-}
-
-double largest(const NodeField& field)
-{
-    double most = 0;
-    for (const double value : field.values()) most = std::max(most, std::abs(value));
-    return most;
 }
 
 NodeField noise(const PlateGrid& grid, unsigned seed, double low, double high)
@@ -307,10 +301,7 @@ TEST(Edges, AGuidedSideIsTheMiddleOfASymmetricPlate)
     const NodeField part = deflection(quarter, force), all = deflection(whole, forces);
 
     const NodeField expected = unfolded(part);
-    double          most     = 0;
-    for (const double w : all.values()) most = std::max(most, std::abs(w));
-    for (std::size_t n = 0; n < all.values().size(); ++n)
-        EXPECT_NEAR(expected.values()[n], all.values()[n], 1e-9 * most) << "up to rounding";
+    EXPECT_LT(errorOf(expected, all), 1e-9) << "up to rounding";
 }
 
 TEST(Edges, MirroredAndTransposedPlatesGiveMirroredAndTransposedAnswers)
@@ -472,7 +463,7 @@ TEST(Foundation, ThatVariesConvergesToAChosenDeflectionWithSecondOrder)
             }
         const NodeField w = deflection(plate, gridLoad(plate.grid, pressure));
         for (std::size_t n = 0; n < w.values().size(); ++n)
-            error[level] = std::max(error[level], std::abs(w.values()[n] - truth.values()[n]));
+            error[level] = worse(error[level], w.values()[n] - truth.values()[n]);
     }
     for (const std::size_t coarser : {0u, 1u})
         EXPECT_NEAR(std::log2(error[coarser] / error[coarser + 1]), 2, 0.05)
@@ -552,7 +543,7 @@ TEST(ReferenceSolver, TheLastStepRemovesTheErrorThatItReports)
     const PlateSolution solution = ReferencePlateSolver(plate).solve(uniformLoad(plate.grid, 1));
 
     double error = 0;
-    for (const double w : solution.deflection.values()) error = std::max(error, std::abs(w * plate.foundation - 1));
+    for (const double w : solution.deflection.values()) error = worse(error, w * plate.foundation - 1);
     EXPECT_GT(*solution.report.errorEstimate, 1e-8) << "otherwise there is nothing to remove";
     EXPECT_LT(error, 0.01 * *solution.report.errorEstimate);
 }

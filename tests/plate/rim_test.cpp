@@ -11,6 +11,7 @@
 #include "engine/plate/multigrid/detail/grid_hierarchy.h"
 #include "engine/plate/multigrid/detail/rim.h"
 #include "tests/plate/kernels/plate_fields.h"
+#include "tests/support/errors.h"
 
 // The exact correction at rims, as a map from forces to deflections, against the operator's own kernel.
 
@@ -112,8 +113,7 @@ TEST(Rim, IsSolvedExactly)
             const std::vector<double> forces = rim.apply(wanted);
             const std::vector<float>  found  = rim.solve({forces.begin(), forces.end()});
             double                    most   = 0;
-            for (std::size_t n = 0; n < found.size(); ++n)
-                most = std::max(most, double(std::abs(found[n] - wanted[n])));
+            for (std::size_t n = 0; n < found.size(); ++n) most = worse(most, double(found[n] - wanted[n]));
             EXPECT_LT(most, 0.02); // measured 5e-3 and 6e-3
         }
 }
@@ -147,7 +147,7 @@ TEST(Rim, TheLastCorrectionLeavesNoResidualThere)
         double                    most = 0;
         for (int n = 0; n < rim.view.unknowns; ++n) {
             const auto node = std::size_t(rim.view.nodes[n]);
-            most            = std::max(most, std::abs(double(force[node]) - a[node]));
+            most            = worse(most, double(force[node]) - a[node]);
         }
         return most;
     };

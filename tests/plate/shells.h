@@ -1,5 +1,4 @@
 #pragma once
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -109,16 +108,6 @@ inline Shell cutAslant(Shell shell)
 inline NodeField fingertip(const PlateGrid& grid, double x = 0, double z = 0)
 {
     return footprintLoad(grid, 1, kSize / 2 + x, kSize / 2 + z, 4e-3);
-}
-
-inline double largestDifference(const NodeField& a, const NodeField& b)
-{
-    double most = 0, size = 0;
-    for (std::size_t n = 0; n < a.values().size(); ++n) {
-        most = std::max(most, std::abs(a.values()[n] - b.values()[n]));
-        size = std::max(size, std::abs(b.values()[n]));
-    }
-    return size > 0 ? most / size : most; // of a load of nothing
 }
 
 } // namespace palp

@@ -7,6 +7,7 @@
 
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/plate/kernels/host_passes.h"
+#include "tests/support/errors.h"
 
 // Tests of the arithmetic that shaders and C++ share, against the reference solver, which has no stencil, and against
 // theory. No processor has to be opened.
@@ -28,13 +29,6 @@ void forAllEdges(Visit&& visit)
 double dot(const std::vector<double>& a, const std::vector<double>& b)
 {
     return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
-}
-
-double largest(const std::vector<double>& values)
-{
-    double most = 0;
-    for (const double value : values) most = std::max(most, std::abs(value));
-    return most;
 }
 
 constexpr double kUnitRigidity = 1024; ///< [N m] a power of two
@@ -230,7 +224,7 @@ TEST(SharedRelaxationTest, NoEigenvalueRelativeToTheDivisorIsLargerThanTwiceThat
             for (int n = 0; n < 300; ++n) { // the largest eigenvalue by powers, from below
                 v           = host::applied(level.g, level.rigidity, v);
                 double size = 0;
-                for (std::size_t m = 0; m < v.size(); ++m) size = std::max(size, std::abs(v[m] *= double(inverse[m])));
+                for (std::size_t m = 0; m < v.size(); ++m) size = worse(size, v[m] *= double(inverse[m]));
                 for (double& value : v) value /= size;
                 found = size;
             }
@@ -311,7 +305,7 @@ double interpolationError(Sizes sizes, Edge first, Edge last, int from, int to, 
         double sum = 0;
         for (int I = 0; I <= sizes.coarse; ++I)
             sum += double(matrices.byFine[std::size_t(i)][std::size_t(I)]) * function(I);
-        most = std::max(most, std::abs(sum - function(double(i) * sizes.coarse / sizes.fine)));
+        most = worse(most, sum - function(double(i) * sizes.coarse / sizes.fine));
     }
     return most / size;
 }
@@ -391,7 +385,7 @@ TEST(CoarseBandTest, TheInverseRootHasAllDigitsOfADouble)
     double most = 0;
     for (double x = 1e-300; x < 1e300; x *= 1.0137) {
         const double exact = double(1 / std::sqrt(static_cast<long double>(x)));
-        most               = std::max(most, std::abs(shared::inverseRoot(x) / exact - 1));
+        most               = worse(most, shared::inverseRoot(x) / exact - 1);
     }
     EXPECT_LE(most, std::ldexp(1, -51)) << "two units: of the last sum and product, and of the quotient here";
     EXPECT_EQ(shared::inverseRoot(4.0), 0.5);

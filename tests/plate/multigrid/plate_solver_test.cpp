@@ -12,6 +12,7 @@
 #include "engine/plate/load.h"
 #include "engine/plate/multigrid/detail/worst.h"
 #include "engine/plate/reference/reference_plate_solver.h"
+#include "tests/support/errors.h"
 #include "tests/support/shader_fixture.h"
 
 namespace palp {
@@ -28,16 +29,6 @@ Plate plateOf(int cells, double contrast)
     return plate;
 }
 
-double difference(const NodeField& a, const NodeField& b)
-{
-    double most = 0, largest = 0;
-    for (std::size_t n = 0; n < a.values().size(); ++n) {
-        most    = std::max(most, std::abs(a.values()[n] - b.values()[n]));
-        largest = std::max(largest, std::abs(b.values()[n]));
-    }
-    return most / largest;
-}
-
 TEST(PlateSolver, SolvesOnTheDeviceOneGridAfterTheOther)
 {
     PlateSolver solver(processorOfTests());
@@ -48,7 +39,7 @@ TEST(PlateSolver, SolvesOnTheDeviceOneGridAfterTheOther)
         const PlateSolution found = solver.solve(plate, load);
         EXPECT_EQ(found.report.solver, solver.name());
         EXPECT_NE(found.report.solver, "reference");
-        EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
+        EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
     }
 }
 
@@ -99,7 +90,7 @@ TEST(PlateSolver, WhatDoesNotFitTheProcessorIsSolvedByTheHostAndWhatDoesReturns)
         const NodeField load  = pointLoad(plate.grid, 1, 0.5, 0.5);
         const auto      found = solver.solve(plate, load);
         EXPECT_EQ(found.report.solver, cells > fits ? std::string(compute::kHostProcessor) : processor) << cells;
-        EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
+        EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-4);
         if (cells == 40) continue;
         EXPECT_NE(solver.note().find("larger than the GPU"), std::string::npos) << solver.note();
     }
@@ -131,7 +122,7 @@ TEST(PlateSolver, LoadsThatDoNotFitTogetherAreSolvedInBatches)
     ASSERT_EQ(found.size(), loads.size());
     for (std::size_t n = 0; n < loads.size(); ++n) {
         EXPECT_EQ(found[n].report.solver, solver.name());
-        EXPECT_LT(difference(found[n].deflection, reference.solve(loads[n]).deflection), 1e-4) << n;
+        EXPECT_LT(errorOf(found[n].deflection, reference.solve(loads[n]).deflection), 1e-4) << n;
     }
     EXPECT_EQ(solver.note(), "") << "nothing went wrong";
     (void)solver.solveAll(plate, loads);
@@ -140,7 +131,7 @@ TEST(PlateSolver, LoadsThatDoNotFitTogetherAreSolvedInBatches)
     for (const std::size_t which : {std::size_t(0), std::size_t(4), std::size_t(6)}) {
         const auto felt     = solver.solveFootprints(plate, footprints, which, 1e-4, 1e-4),
                    expected = whole.solveFootprints(plate, footprints, which, 1e-4, 1e-4);
-        EXPECT_LT(difference(felt.whole.deflection, reference.solve(loads[which]).deflection), 1e-4) << which;
+        EXPECT_LT(errorOf(felt.whole.deflection, reference.solve(loads[which]).deflection), 1e-4) << which;
         for (std::size_t n = 0; n < loads.size(); ++n)
             EXPECT_NEAR(felt.responses[n].work, expected.responses[n].work, 1e-6 * felt.responses[n].work)
                 << "each is as accurate as the square of 1e-4";
@@ -161,7 +152,7 @@ TEST(PlateSolver, AToleranceThatNeedsDoublesIsReachedByTheHostWhereTheProcessorH
     EXPECT_EQ(solver.note(), "");
     const PlateSolution found = solver.solve(plate, load, 1e-6);
     EXPECT_TRUE(found.report.converged);
-    EXPECT_LT(difference(found.deflection, truth), 2e-6);
+    EXPECT_LT(errorOf(found.deflection, truth), 2e-6);
     EXPECT_EQ(found.report.solver, compute::kHostProcessor);
     EXPECT_NE(solver.note().find("has no doubles"), std::string::npos) << solver.note();
     EXPECT_EQ(solver.solve(plate, load, 1e-3).report.solver, processor) << "for that tolerance only";
@@ -181,7 +172,7 @@ TEST(PlateSolver, APlateTooSoftForFloatsIsSolvedByTheHost)
         const auto load  = pointLoad(plate.grid, 1, 0.5, 0.5);
         const auto found = solver.solve(plate, load, 1e-4);
         EXPECT_TRUE(found.report.converged);
-        EXPECT_LT(difference(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-3)
+        EXPECT_LT(errorOf(found.deflection, ReferencePlateSolver(plate).solve(load).deflection), 1e-3)
             << foundation << " Pa/m, by " << found.report.solver << ": " << solver.note();
     }
 }
@@ -297,7 +288,7 @@ TEST(PlateSolver, WhatFootprintsFeelIsRightToTheToleranceOnEveryProcessor)
             EXPECT_NEAR(found.responses[n].changeX, truth.changeX, 2e-2 * std::abs(truth.changeX) + 1e-3 * truth.work)
                 << "changes are as wrong as the answer, 1e-2";
             if (n == 5) {
-                EXPECT_LT(difference(found.whole.deflection, w), 1e-4);
+                EXPECT_LT(errorOf(found.whole.deflection, w), 1e-4);
             }
         }
         EXPECT_EQ(found.whole.report.solver, solver.name());
@@ -361,7 +352,7 @@ TEST(PlateSolver, APlatesAnswerDoesNotDependOnThoseBefore)
         EXPECT_EQ(one.solve(*plate, load).deflection.values(), alone(*plate));
     const Plate wide = plateOf(32, 1e-14); // within 32 bits, but not in the unit of a plate a hundred times as stiff
     static_cast<void>(one.solve(plateOf(32, 100), load));
-    EXPECT_LT(difference(one.solve(wide, load).deflection, PlateSolver("host").solve(wide, load).deflection), 1e-12)
+    EXPECT_LT(errorOf(one.solve(wide, load).deflection, PlateSolver("host").solve(wide, load).deflection), 1e-12)
         << "it was refused; measured 1.4e-14: of so wide a map nobody asks for bits";
 }
 
@@ -379,8 +370,8 @@ TEST(PlateSolver, SeveralLoadsOfOnePlateAreThoseOfEachAlone)
         const auto together = solver.solveAll(plate, loads);
         ASSERT_EQ(together.size(), loads.size());
         for (std::size_t n = 0; n < loads.size(); ++n)
-            EXPECT_LT(difference(together[n].deflection, reference.solve(loads[n]).deflection), 1e-4) << n;
-        EXPECT_LT(difference(solver.solve(plate, loads[2]).deflection, together[2].deflection), 2e-4) << "one after";
+            EXPECT_LT(errorOf(together[n].deflection, reference.solve(loads[n]).deflection), 1e-4) << n;
+        EXPECT_LT(errorOf(solver.solve(plate, loads[2]).deflection, together[2].deflection), 2e-4) << "one after";
     }
 }
 

@@ -11,6 +11,7 @@
 #include "engine/plate/reference/reference_shell_solver.h"
 #include "tests/plate/shells.h"
 #include "tests/plate/strips.h"
+#include "tests/support/errors.h"
 #include "tests/support/shader_fixture.h"
 
 // The shaders of shells against the host's kernels, to the bit where the processor rounds as C++ does, and against the
@@ -51,7 +52,7 @@ protected:
                 EXPECT_EQ(found[n].deflection.values(), alone.deflection.values()) << where << ", load " << n;
                 EXPECT_EQ(found[n].stressFunction.values(), alone.stressFunction.values()) << where << ", load " << n;
             } else { // fused products change roundings, and with them what is left of the error that was allowed
-                EXPECT_LT(largestDifference(found[n].deflection, alone.deflection), 10 * tolerance) << where;
+                EXPECT_LT(errorOf(found[n].deflection, alone.deflection), 10 * tolerance) << where;
             }
         }
     }
@@ -99,7 +100,7 @@ TEST_F(ShellOnProcessor, HasTheBitsOfTheHostUnderLoadsOnBothFields)
             EXPECT_EQ(there.work, here.work);
             EXPECT_EQ(there.stressFunction.values(), here.stressFunction.values());
         } else {
-            EXPECT_LT(largestDifference(there.deflection, here.deflection), 1e-5);
+            EXPECT_LT(errorOf(there.deflection, here.deflection), 1e-5);
         }
     }
 }
@@ -131,7 +132,7 @@ TEST_F(ShellOnProcessor, StopsAfterOneStepWhereAllLoadsHaveGainedEnough)
         EXPECT_TRUE(found[n].report.converged);
         const NodeField exact = reference.solve(loads[n]).deflection;
         EXPECT_NEAR(found[n].work / responseOf(Footprint(loads[n]), exact).work, 1, 1e-4) << "the tolerance's square";
-        EXPECT_LT(largestDifference(found[n].deflection, exact), 1e-3) << "3e-4; without the step it is 6e-3";
+        EXPECT_LT(errorOf(found[n].deflection, exact), 1e-3) << "3e-4; without the step it is 6e-3";
     }
     EXPECT_GT(solved(shell, {loads.data(), 1}, 1e-2).front().report.iterations, 1) << "one load alone tells less";
 }
@@ -156,7 +157,7 @@ TEST_F(ShellOnProcessor, SolvesTheCoarsestLevelByItsInverseAsByItsFactors)
         for (std::size_t n = 0; n < loads.size(); ++n) {
             EXPECT_TRUE(a[n].report.converged);
             EXPECT_EQ(a[n].report.iterations, b[n].report.iterations);
-            EXPECT_LT(largestDifference(a[n].deflection, b[n].deflection), 1e-6) << "both are so near to the exact one";
+            EXPECT_LT(errorOf(a[n].deflection, b[n].deflection), 1e-6) << "both are so near to the exact one";
             EXPECT_NEAR(a[n].work / b[n].work, 1, 1e-9)
                 << "the tolerance's square, and its estimate's factor of a thousand";
         }
@@ -203,8 +204,8 @@ TEST_F(ShellOnProcessor, IsTheReference)
     const auto      found = solved(shell, {&load, 1}, 1e-7).front();
     const auto      exact = ReferenceShellSolver(shell).solve(load);
     // As on the host: coefficients of the levels are floats, and the plate's condition makes some tens of 6e-8.
-    EXPECT_LT(largestDifference(found.deflection, exact.deflection), 5e-6);
-    EXPECT_LT(largestDifference(found.stressFunction, exact.stressFunction), 5e-6);
+    EXPECT_LT(errorOf(found.deflection, exact.deflection), 5e-6);
+    EXPECT_LT(errorOf(found.stressFunction, exact.stressFunction), 5e-6);
 }
 
 TEST_F(ShellOnProcessor, IsWhatAPlateSolverTakes)
