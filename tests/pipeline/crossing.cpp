@@ -7,6 +7,7 @@
 
 #include "engine/chart/resample.h"
 #include "engine/force/force_law.h"
+#include "tests/support/errors.h"
 #include "tests/support/published_tables.h"
 
 namespace palp {
@@ -158,11 +159,12 @@ Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law,
             const double felt = feltStiffness(ForceLaw::series, handed->contactStiffness, handed->compliance);
             const double own =
                 feltStiffness(ForceLaw::series, std::exp(expected.lnContactStiffness), std::exp(expected.lnCompliance));
-            result.error      = std::max(result.error, std::abs(std::exp(expected.lnCompliance - logarithm) - 1));
-            result.step       = std::max(result.step, relative(logarithm - lastHanded));
+            result.error      = worse(result.error, std::exp(expected.lnCompliance - logarithm) - 1);
+            result.step       = worse(result.step, relative(logarithm - lastHanded));
             result.objectStep = std::max(result.objectStep, relative(expected.lnCompliance - lastTrue.lnCompliance));
-            result.felt       = std::max(result.felt, std::abs(felt / own - 1));
+            result.felt       = worse(result.felt, felt / own - 1);
             result.clamped += handed->clamped;
+            result.judged += kTick / (crossing.until - crossing.from);
         }
         lastHanded = logarithm;
         lastTrue   = expected;

@@ -54,6 +54,7 @@ struct Crossed {
     double        objectStep = 0; ///< the same of the force that the sheet itself gives [1]
     double        felt       = 0; ///< largest error of the force in series with a contact of k_c c = 6 [1]
     std::uint64_t clamped    = 0; ///< ticks beyond the reach [1]
+    double        judged     = 0; ///< share of the ticks from which the rest is [1]: 1 but for the first of them
 };
 /// \param rate  of the deformation thread [Hz]
 [[nodiscard]] Crossed crossed(const Sheet& sheet, const Crossing& crossing, ComplianceLaw law, double rate);
