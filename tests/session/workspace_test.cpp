@@ -5,18 +5,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include <glm/geometric.hpp>
 
-#include "device/hid/hidapi_system.h"
 #include "engine/session/clutch.h"
-#include "engine/session/device_registry.h"
 #include "engine/session/gripped_haply.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/replay_device.h"
 #include "engine/session/session_hand.h"
-#include "tests/session/sheet_session.h"
+#include "tests/session/gripped_session.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -24,41 +21,11 @@ namespace {
 
 constexpr double kScale = 3; // [1] as of a workspace of 40 mm before an object of 120 mm
 
-constexpr const char* kStiff = R"({"law": "constant", "value": 30e6})";
-
 Scene scaled(const char* stiffness, double scale = kScale)
 {
     Scene scene          = sheetScene(stiffness);
     scene.workspaceScale = scale;
     return scene;
-}
-
-/// A session on an emulated device that a scripted hand grips, at a scale.
-struct Rig {
-    SheetSession                  session;
-    HandPath                      path;
-    GrippingHand                  hand;
-    std::unique_ptr<HapticDevice> device;
-
-    Rig(const char* name, const Scene& scene, HandPath way, const SimulatedHand& grip, std::uint32_t clutch = 0)
-        : session(scene), path(std::move(way)), hand{path, grip, deviceFrame({0, 0, 6e-3}, {0, 0, 1})}
-    {
-        hand.frame.scale  = scene.workspaceScale;
-        hand.frame.clutch = clutch;
-        HidapiSystem hid;
-        device = deviceNamed(name)->make({.hid = hid, .hand = &hand});
-        device->open();
-    }
-    SessionSummary run(double seconds, const OnTick& onTick)
-    {
-        Deformation deformation(session.object, session.scene);
-        return runVirtual({session.scene, session.object, deformation.solver(), *device, hand.frame}, seconds, onTick);
-    }
-};
-
-HandPath pressing(double depth)
-{
-    return HandPath({{0, {5e-3, 0, 6e-3}}, {2.5, {5e-3, 0, 6e-3}}, {2.8, {5e-3, 0, -depth}}, {20, {5e-3, 0, -depth}}});
 }
 
 class ScaledSessions : public ::testing::TestWithParam<const char*> {};
@@ -73,26 +40,7 @@ INSTANTIATE_TEST_SUITE_P(On, ScaledSessions, ::testing::Values("haply-emulator",
 /// the device, and the arm comes to rest there.
 TEST_P(ScaledSessions, APressedWallComesToRestAtTheCapOfTheDevice)
 {
-    for (const double grip : {50.0, 150.0, 500.0}) {
-        Rig          rig(GetParam(), scaled(kStiff), pressing(9e-3), {.stiffness = grip, .damping = 0});
-        const double cap = std::min(rig.session.scene.stiffnessCap, rig.device->info().maximumStiffness);
-        double       low = 1, high = -1, stiffest = 0, force = 0; // [m], [N/m], [N]
-        const auto   summary = rig.run(6, [&](const TickRecord& record) {
-            if (record.time < 5) return;
-            low      = std::min(low, record.hip.z / kScale);
-            high     = std::max(high, record.hip.z / kScale);
-            stiffest = std::max(stiffest, record.stiffness * kScale);
-            force    = glm::length(record.force);
-        });
-        std::printf("  %s, grip %3.0f N/m: swing %.1f um, %.0f N/m at the device, %.2f N\n", GetParam(), grip,
-                    (high - low) * 1e6, stiffest, force);
-        EXPECT_EQ(summary.fault, GovernorFault::none);
-        EXPECT_EQ(summary.deviceFault, DeviceFault::none);
-        EXPECT_LE(high - low, 2 * 48e-6) << "of the device, as at scale 1: two encoder steps of a Falcon";
-        EXPECT_GT(force, 0.1);
-        EXPECT_LE(stiffest, cap * (1 + 1e-9)) << "rounding";
-        EXPECT_GT(stiffest, 0.5 * cap) << "the cap must be near, or this shows little";
-    }
+    EXPECT_GT(restAtTheCap(GetParam(), 9e-3, kScale), 0);
 }
 
 /// Let go of on a spring at the cap that pulls from both sides, which no surface does, the arm settles: the servo's
@@ -210,7 +158,7 @@ TEST(ScaledSession, AReplayGivesTheSameBits)
                           {2.6, {5.3e-3, -0.7e-3, -3.1e-3}, 2},
                           {2.9, {8.3e-3, 2.9e-3, 6.1e-3}, 0},
                           {6, {8.3e-3, 2.9e-3, 6.1e-3}}});
-    Rig             rig("haply-emulator", scaled(kWart), path, {.stiffness = 2000, .damping = 5}, 2);
+    GrippedSession  rig("haply-emulator", scaled(kWart), path, {.stiffness = 2000, .damping = 5}, 2);
     RecordedSession live, replayed;
     (void)rig.run(4, [&](const TickRecord& record) { live.records.push_back(record); });
     live.columns = replayed.columns = ~std::uint64_t(0);
@@ -238,7 +186,7 @@ TEST(ClutchedSession, TheToolStaysWithoutAForceAndGoesOnFromThere)
                          {4, {-9e-3, 0, -2e-3}, 0},
                          {4.5, {-9e-3, 0, 8e-3}},
                          {9, {-9e-3, 0, 8e-3}}});
-    Rig            rig("arm", sheetScene(kWart), path, {.stiffness = 2000, .damping = 5}, 2);
+    GrippedSession rig("arm", sheetScene(kWart), path, {.stiffness = 2000, .damping = 5}, 2);
     double         felt = 0, moved = 0, left = 0, carried = 0; // [N], [m], [N], [m]
     glm::dvec3     held{}, end{};
     const auto     summary = rig.run(6, [&](const TickRecord& r) {
