@@ -1,15 +1,19 @@
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <limits>
 #include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "engine/capi/palpate.h"
+#include "tests/capi/sheet.h"
 
 // Values that no caller means, in structs and arrays that are whole: each gives an answer or a sentence, and no answer
 // is a force that is not finite. PALPATE_HOSTILE_ROUNDS in the environment is how many objects are tried [200].
@@ -54,6 +58,9 @@ public:
 private:
     std::mt19937 random_;
 };
+
+constexpr double kPlace = 4e-3;                // [m] along x and y, where a hand presses
+constexpr double kAbove = 1e-3, kBelow = 5e-4; // [m] how far it goes up and down
 
 void expectAnswer(int code, const char* what)
 {
@@ -152,6 +159,41 @@ void run(Hostility& h, const palpate_object* object)
     for (const double part : forces) EXPECT_TRUE(std::isfinite(part));
 }
 
+/// Steps a session whose hand goes down, stays and is up again, with what no hand does in between.
+/// \param time  [s] of the last step
+/// \param lead  ticks by which it goes down earlier: from 500 on it begins below
+/// \return ticks with a force
+int stepOn(Hostility& h, palpate_session* session, std::size_t points, double time, int lead)
+{
+    std::vector<double> xyz(3 * points);
+    std::uint64_t       sequence = 0;
+    int                 felt     = 0;
+    for (int n = 0; n < 3000; ++n) {
+        h.rarity = n % 1000 < 500 ? 100'000 : 30;
+        time += h.about(1e-3);
+        auto hand        = PALPATE_INIT(palpate_hand);
+        auto answer      = PALPATE_INIT(palpate_answer);
+        hand.position[0] = kPlace + h.mostly(1e-5); // further is a jump, which takes the force
+        hand.position[1] = kPlace + h.mostly(1e-5);
+        hand.position[2] = kAbove - (kAbove + kBelow) * std::min(1.0, ((n + lead) % 1000) / 500.0) + h.mostly(1e-6);
+        for (double& part : hand.velocity) part = h.mostly(0.01);
+        hand.age     = h.oneIn(3) ? h.about(1e-3) : 0;
+        hand.buttons = h.oneIn(50) ? std::uint32_t(h.below(1U << 20U)) : 0;
+        hand.absent  = h.oneIn(100);
+        EXPECT_EQ(palpate_session_step(session, h.oneIn(100) ? h.wild() : time, &hand, &answer), PALPATE_OK);
+        const double force = std::hypot(answer.force[0], answer.force[1], answer.force[2]);
+        EXPECT_LE(force, answer.flags & PALPATE_BAD_INPUT ? 0 : 6.0 + 1e-9) << "max_force, tick " << n; // nor is it NaN
+        felt += force > 1e-3;
+        if (n % 200 == 0)
+            expectAnswer(palpate_session_deformed(session, xyz.data(), xyz.size() / 3, &sequence), "deformed");
+        std::array<char, 600> words{};
+        if (n % 200 == 0) expectAnswer(palpate_session_words(session, words.data(), words.size()), "words");
+        if (n % 200 == 1) expectAnswer(palpate_session_takeover(session, words.data(), words.size()), "takeover");
+        if (testing::Test::HasFailure()) break;
+    }
+    return felt;
+}
+
 void step(Hostility& h, const palpate_object* object)
 {
     h.rarity      = 10;
@@ -163,33 +205,7 @@ void step(Hostility& h, const palpate_object* object)
     palpate_session* session = nullptr;
     expectAnswer(palpate_session_create(object, &settings, &session), "session");
     if (!session) return;
-    std::vector<double> xyz(3 * palpate_object_size(object));
-    std::uint64_t       sequence = 0;
-    double              time     = 0;
-    for (int n = 0; n < 3000; ++n) {
-        h.rarity = n % 1000 < 500 ? 100'000 : 30;
-        time += h.about(1e-3);
-        auto hand        = PALPATE_INIT(palpate_hand);
-        auto answer      = PALPATE_INIT(palpate_answer);
-        hand.position[0] = h.about(4e-3);
-        hand.position[1] = h.about(4e-3);
-        hand.position[2] = 1e-3 - 1.5e-3 * std::min(1.0, (n % 1000) / 500.0) + h.mostly(1e-6);
-        for (double& part : hand.velocity) part = h.mostly(0.01);
-        hand.age     = h.oneIn(3) ? h.about(1e-3) : 0;
-        hand.buttons = h.oneIn(50) ? std::uint32_t(h.below(1U << 20U)) : 0;
-        hand.absent  = h.oneIn(100);
-        ASSERT_EQ(palpate_session_step(session, h.oneIn(100) ? h.wild() : time, &hand, &answer), PALPATE_OK);
-        for (const double part : answer.force) ASSERT_TRUE(std::isfinite(part)) << "tick " << n;
-        ASSERT_LE(std::hypot(answer.force[0], answer.force[1], answer.force[2]), 6.0 + 1e-9) << "max_force";
-        if (answer.flags & PALPATE_BAD_INPUT) {
-            for (const double part : answer.force) ASSERT_EQ(part, 0);
-        }
-        if (n % 200 == 0)
-            expectAnswer(palpate_session_deformed(session, xyz.data(), xyz.size() / 3, &sequence), "deformed");
-        std::array<char, 600> words{};
-        if (n % 200 == 0) expectAnswer(palpate_session_words(session, words.data(), words.size()), "words");
-        if (n % 200 == 1) expectAnswer(palpate_session_takeover(session, words.data(), words.size()), "takeover");
-    }
+    stepOn(h, session, palpate_object_size(object), 0, 0);
     palpate_session_destroy(session);
 }
 
@@ -209,6 +225,45 @@ TEST(Hostile, ObjectsTouchesAndSessionsAnswerOrRefuse)
         if (HasFailure()) return;
     }
     EXPECT_GT(made, roundsOfThisRun() / 4) << "most are meant to be taken";
+}
+
+/// Presses in the pace of the thread that solves, until there is a force and a patch.
+/// \return when [s]; 0 if that never was
+double timeOfPress(palpate_session* session, std::size_t points)
+{
+    std::vector<double> xyz(3 * points);
+    std::uint64_t       patches = 0;
+    for (int n = 1; n < 10'000; ++n) {
+        auto hand        = PALPATE_INIT(palpate_hand);
+        auto answer      = PALPATE_INIT(palpate_answer);
+        hand.position[0] = hand.position[1] = kPlace;
+        hand.position[2]                    = std::max(-kBelow, kAbove - 1e-5 * n);
+        EXPECT_EQ(palpate_session_step(session, 1e-3 * n, &hand, &answer), PALPATE_OK);
+        expectAnswer(palpate_session_deformed(session, xyz.data(), points, &patches), "deformed");
+        if (patches > 0 && answer.force[2] > 0.01) return 1e-3 * n;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return 0;
+}
+
+/// Hostile objects hardly ever push, and a force that never flows is always finite.
+TEST(Hostile, AHandThatPressesMaySayAnythingNext)
+{
+    Hostility       h(13);
+    palpate_object* object = nullptr;
+    ASSERT_EQ(palpate_object_from_scene(kSheet, nullptr, &object), PALPATE_OK) << palpate_error_text();
+    const std::size_t points = palpate_object_size(object);
+    int               felt   = 0;
+    for (int n = 0; n < 5; ++n) {
+        palpate_session* session = nullptr;
+        ASSERT_EQ(palpate_session_create(object, nullptr, &session), PALPATE_OK) << palpate_error_text();
+        const double pressed = timeOfPress(session, points);
+        EXPECT_GT(pressed, 0) << "it was never felt";
+        felt += stepOn(h, session, points, pressed, 500);
+        palpate_session_destroy(session);
+    }
+    palpate_object_destroy(object);
+    EXPECT_GT(felt, 20) << "in each until the first bad tick, of which one in fifty is";
 }
 
 TEST(Hostile, PlatesAreSolvedOrRefused)

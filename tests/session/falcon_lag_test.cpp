@@ -338,6 +338,7 @@ TEST(FalconLag, APressedWallIsAtRestHalfASecondLaterOnEveryLine)
                             "%.2f N\n",
                             line.name().c_str(), arm.mass, arm.damping, damping, wall.cap, wall.swing * 1e3, wall.least,
                             wall.most);
+                EXPECT_GT(wall.least, 0.5 * std::min(kWart, wall.cap) * kDepth) << "or it rests on nothing";
                 EXPECT_LT(wall.swing, 0.2e-3) << line.name();
                 EXPECT_EQ(wall.fault, GovernorFault::none) << line.name();
             }
