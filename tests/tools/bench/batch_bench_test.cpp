@@ -25,7 +25,6 @@ TEST(BatchBench, SaysWhatABatchCostsWithoutARatio)
         EXPECT_GT(rows[n].movedGigabytes, 0);
         EXPECT_EQ(rows[n].ratio(), std::nullopt);
     }
-    EXPECT_GT(rows[3].palpateMs->median, 5 * rows[0].palpateMs->median) << "49 loads for one";
     const double step = *rows[0].workUnits / *rows[0].iterations; // and more: nested iteration is in it
     EXPECT_NEAR(*rows[3].workUnits, *rows[0].workUnits, step) << "per load: the worst of 49 may take a step more";
 
