@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
@@ -129,6 +130,12 @@ TEST(WartPart, ThePapersLawIsStifferThanADeviceAndOursIsNot)
     EXPECT_EQ(section.number("series/share_below_cap").front(), 1);
     const auto &paper = section.number("paper/stiffness"), &series = section.number("series/stiffness");
     for (std::size_t n = 0; n < paper.size(); ++n) EXPECT_GT(paper[n], series[n]) << "a spring more in series";
+    // E A / h of the skin, and of the wart ten times as much, evened out by points 1.3 mm apart and under the finger.
+    const double skin        = 0.3e6 * std::numbers::pi * 3.6e-3 * 3.6e-3 / 4e-3; // [N/m]
+    const auto [least, most] = std::minmax_element(paper.begin(), paper.end());
+    EXPECT_NEAR(*least / skin, 1, 0.01) << "3.1 kN/m on the page: 20 mm beside it there is no wart";
+    EXPECT_GT(*most, 17e3) << "25 kN/m on the page, whose points are twice as close";
+    EXPECT_LT(*most, 10 * skin);
     EXPECT_NEAR(section.number("series/steps_weber_0.07").front(), 9.6, 1) << "of the sample scene, on a finer grid";
 }
 
