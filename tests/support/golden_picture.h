@@ -39,7 +39,7 @@ struct PictureDifference {
 /// Expects that a picture looks like the stored one in the folder, and that the validation layer was silent during the
 /// drawing. Stored pictures are valid for the driver that the folder's driver.txt names. Another driver, or the same
 /// one on a processor without AVX ("128 bits"), also rounds positions differently and covers other pixels at edges:
-/// then the test is skipped.
+/// then the test is skipped, and the program says so once, in a line that the release's gate finds.
 /// PALPATE_GOLDEN_WRITE=1 stores the pictures anew; look at them before committing.
 void expectGolden(const std::filesystem::path& folder, const std::string& name, const Image& image,
                   SurfaceRenderer& renderer);
