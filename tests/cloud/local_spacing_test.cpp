@@ -5,12 +5,12 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
-#include "tests/contact/proxy_scenes.h"
+#include "tests/cloud/point_sheets.h"
 
 namespace palp {
 namespace {
 
-using namespace proxytest;
+using namespace cloudtest;
 
 std::vector<double> spacingsOf(const Points& points)
 {
