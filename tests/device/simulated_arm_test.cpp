@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/core/contract.h"
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -180,7 +181,7 @@ double stiffnessLimit(double period, int delay, double damping, double low, doub
             static_cast<void>(arm.step({-stiffness * x - damping * (x - last) / period, 0, 0}, period));
             last = x;
             if (n >= second && n < 2 * second) early = std::max(early, std::abs(x));
-            if (n >= 7 * second) late = std::max(late, std::abs(x));
+            if (n >= 7 * second) late = worse(late, x);
         }
         return late < early;
     };

@@ -18,6 +18,7 @@
 #include "engine/force/energy_tank.h"
 #include "engine/force/governor.h"
 #include "engine/session/servo.h"
+#include "tests/support/errors.h"
 
 namespace palp {
 namespace {
@@ -158,7 +159,7 @@ double growth(const Line& line, const SimulatedArmSettings& arm, double stiffnes
     const auto most   = [&](double seconds) {
         double far = 0;
         rig.run(seconds, [&](const Reading& now) {
-            far = std::max(far, std::abs(rig.arm.position().y));
+            far = worse(far, rig.arm.position().y);
             return spring(now);
         });
         return far;
@@ -293,7 +294,7 @@ TEST(FalconLag, ReleasedAtTheCapTheArmSettlesOnEveryLine)
         const auto most = [&](double seconds) {
             double far = 0;
             rig.run(seconds, [&](const Reading& now) {
-                far = std::max(far, std::abs(rig.arm.position().y));
+                far = worse(far, rig.arm.position().y);
                 return tick(now);
             });
             return far;
