@@ -74,6 +74,14 @@ constexpr auto namesOf(DeviceFault)
     return fault == DeviceFault::unplugged || fault == DeviceFault::linkLost;
 }
 
+/// Returns whether a device tells its place all the same: one that has stopped by itself, or was silenced, goes on
+/// answering.
+[[nodiscard]] constexpr bool tellsPlace(DeviceFault fault) noexcept
+{
+    using enum DeviceFault;
+    return fault == none || fault == ownWatchdog || fault == badForce || fault == hostTooSlow || fault == silenced;
+}
+
 /// The device as of its last good answer, in its own frame: x right, y up, z towards the user, the origin in the middle
 /// of its workspace.
 struct HapticState {

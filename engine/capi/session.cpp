@@ -42,8 +42,10 @@ Hand handOf(const palpate_hand& given)
 
 std::uint32_t flagsOf(const TickRecord& r, bool good)
 {
-    const auto    has      = [&](SessionFlag flag) { return (r.faults & std::uint32_t(flag)) != 0; };
-    const bool    touching = r.normal != glm::dvec3(0);
+    const auto has = [&](SessionFlag flag) { return (r.faults & std::uint32_t(flag)) != 0; };
+    Hand       hand;
+    hand.setBits(r.device);
+    const bool    touching = hand.hasPlace() && r.normal != glm::dvec3(0);
     std::uint32_t flags    = touching ? PALPATE_TOUCHING : 0;
     switch (forceState(r)) {
     case ForceState::stopped:

@@ -239,8 +239,8 @@ int cellsFor(double lengths, int cells)
     constexpr double kFew = 16, kPerLength = 5;  // lengths that the settings' cells are for; cells to each beyond [1]
     constexpr int    kTogether = 16, kTimes = 2; // a multiple that a multigrid can coarsen; as many cells at most
     if (!(lengths > kFew)) return cells;
-    const double wanted = std::min(kPerLength * lengths, double(kTimes * cells));
-    return std::max(cells, kTogether * int(std::ceil(wanted / kTogether - 1e-9)));
+    const int wanted = kTogether * int(std::ceil(kPerLength * lengths / kTogether - 1e-9));
+    return std::max(cells, std::min(wanted, kTimes * cells / kTogether * kTogether));
 }
 
 /// Chooses a width where dents end by themselves, on some of the object at least.
@@ -255,9 +255,10 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
                  (settings.theory == Theory::shell ? ", see the support range of palpate touch" : "");
     const std::string asked  = reach + ", ask for " + formatQuantity(lengths.window, "m");
     const std::string anyhow = "four radii of the fingertip, because ";
-    const double      filled = widthOfObject(object), room = std::min(lengths.window, filled);
-    const int         cells   = cellsFor(room / lengths.typical, settings.cells);
-    const double      carried = cells * settings.footprintRadius / kFewestCells, width = std::min(room, carried);
+    const double filled = widthOfObject(object), carried = settings.cells * settings.footprintRadius / kFewestCells;
+    const double width = std::min({lengths.window, filled, carried});
+    const int    cells =
+        settings.theory == Theory::shell ? cellsFor(width / lengths.typical, settings.cells) : settings.cells;
     const std::string finer = cells > settings.cells ? "; with " + std::to_string(cells) + " cells for " +
                                                            std::to_string(settings.cells) + ", so that they see a dent"
                                                      : "";
@@ -265,8 +266,8 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
     if (width < least) return {{least, settings.cells}, anyhow + "the object is hardly wider about its middle"};
     if (width == carried)
         return {{width, cells},
-                "as wide as " + std::to_string(cells) + " cells carry this fingertip, where " + asked +
-                    "; take more cells"};
+                "as wide as " + std::to_string(settings.cells) + " cells carry this fingertip, where " + asked +
+                    "; take more cells" + finer};
     if (width == filled) return {{width, cells}, "as wide as the object is about its middle, where " + asked + finer};
     return {{width, cells},
             "as wide as " + reach + ", ask for " + (allOver ? "at nearly all places" : "on average") + finer};

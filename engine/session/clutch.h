@@ -15,7 +15,8 @@ namespace palp {
 }
 
 /// Holds the tool of the scene where it is while its user carries the device back to the middle of the workspace, as
-/// one lifts a mouse and puts it down elsewhere. No force flows meanwhile; afterwards it engages anew.
+/// one lifts a mouse and puts it down elsewhere. No force flows meanwhile; afterwards it engages anew. While the
+/// device's place is not known the tool stays where it was, too.
 ///
 ///     tool = device + offset         the offset is what the device went while the clutch was held
 ///
@@ -29,17 +30,18 @@ public:
     /// \param isAsked  the clutch is held by other means than that button
     HapticState step(HapticState state, bool isAsked) noexcept
     {
-        const glm::dvec3 device = state.position;
-        isHeld_                 = isAsked || state.clutched || (state.buttons & button_) != 0;
+        const glm::dvec3 device   = state.position;
+        const bool       hasPlace = state.homed && tellsPlace(state.fault);
+        isHeld_                   = isAsked || state.clutched || (state.buttons & button_) != 0;
         state.buttons &= ~button_;
-        if (isHeld_ && isPlaced_) {
-            offset_        = tool_ - device;
+        if (isPlaced_ && (isHeld_ || !hasPlace)) {
+            if (hasPlace) offset_ = tool_ - device;
             state.velocity = {};
         } else {
             tool_ = device + offset_;
         }
         state.position = tool_; // to the bit while it is held, as its replay has it
-        isPlaced_      = isPlaced_ || (state.homed && state.fault == DeviceFault::none);
+        isPlaced_      = isPlaced_ || hasPlace;
         return state;
     }
 

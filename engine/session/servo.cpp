@@ -54,16 +54,17 @@ ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std
 {
     if (!from) return;
     proxy_.step(*from);
+    hip_    = *from;
     isFree_ = false;
 }
 
 const ProxyContact& ContactHalf::tick(double time, const Hand& hand, const glm::dvec3& lean) noexcept
 {
-    if (hand.isThere()) hip_ = hand.position;
-    isKnown_ = isKnown_ || hand.isThere();
+    if (hand.hasPlace()) hip_ = hand.position;
+    isKnown_ = isKnown_ || hand.hasPlace();
     if (!isKnown_) {
         held_.touch.time  = time;
-        held_.touch.point = hand.position;
+        held_.touch.point = isFree_ ? hand.position : hip_;
         held_.behind      = !isFree_;
         return held_;
     }

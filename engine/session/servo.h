@@ -69,7 +69,8 @@ struct Hand {
     bool          letGo    = false;        ///< see GovernorInput
     bool          clutched = false;        ///< likewise
 
-    /// Returns whether its place is known.
+    /// Returns whether its place is known; and whether a force may flow, too.
+    [[nodiscard]] bool hasPlace() const noexcept { return homed && tellsPlace(device); }
     [[nodiscard]] bool isThere() const noexcept { return homed && device == DeviceFault::none; }
 
     /// Packs faults, flags and buttons into TickRecord::device; setBits() reads it back.
@@ -122,7 +123,7 @@ public:
     ///                begins in free space
     ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from = {});
 
-    /// Runs one tick of the proxy. A hand that is not there moves nothing: the proxy is first placed where a hand is
+    /// Runs one tick of the proxy. A hand whose place is not known moves nothing: the proxy is first placed where a hand is
     /// known to be, since that place decides on which side of the surface it is.
     /// \param time  [s] of the session's clock
     /// \param lean  [m] the latest of the force, ForceHalf::lean()

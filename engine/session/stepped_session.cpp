@@ -35,8 +35,7 @@ HapticDeviceInfo withUnknowns(HapticDeviceInfo device)
     return device;
 }
 
-/// Gives the tool its place in place of the hand's, which differ by what the hand went while the clutch was held; one
-/// that is not there holds the tool, too.
+/// Gives the tool its place in place of the hand's, which differ by what the hand went while the clutch was held.
 void holdByClutch(Hand& hand, Clutch& clutch) noexcept
 {
     HapticState state;
@@ -67,7 +66,7 @@ struct SteppedSession::Impl {
     DeformationLoop                          loop;
     std::optional<Recording>                 recording;
     TickRecord                               last{};
-    Hand                                     hand{}; ///< the last one that was there
+    Hand                                     hand{}; ///< the last one whose place was known
     Clutch                                   clutch;
     VelocityFilter                           moved{15e-3}; ///< [s] as drivers of devices take it
     double                                   time = 0;     ///< [s] of the last tick
@@ -119,21 +118,22 @@ const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
     constexpr double kNominal = 1e-3; // [s] of the first tick, and of one whose time is not good
     Impl&            s        = *impl_;
     const bool       rises    = std::isfinite(time) && (!s.begun || time > s.time);
-    const bool       good = rises && isGood(given), isThere = good && given.isThere();
+    const bool       good = rises && isGood(given), hasPlace = good && given.hasPlace();
     const double     dt = (s.begun && rises ? time - s.time : kNominal) + s.sleep.slept();
     if (rises) s.time = time;
     s.begun = true;
     ++s.steps;
-    Hand hand = isThere ? given : s.hand;
-    if (isThere) {
+    Hand hand = given;
+    if (hasPlace) {
         if (ForceGovernor::isJump(glm::length(given.position - s.hand.position), dt)) s.moved.restart();
         s.hand = given;
         s.moved.add(s.time, given.position);
         if (given.velocity == glm::dvec3(0)) hand.velocity = s.moved.velocity(); // many a host has none
     } else { // no place of a hand, by which a tool could move
-        hand.velocity = {};
-        hand.homed    = given.homed;
-        hand.device   = good ? given.device : DeviceFault::kinematics;
+        hand.position    = s.hand.position;
+        hand.velocity    = {};
+        hand.orientation = s.hand.orientation;
+        if (!good) hand.device = DeviceFault::kinematics;
     }
     hand.answerTime = s.time;
     hand.sequence   = s.steps;

@@ -29,10 +29,10 @@ public:
     SteppedSession& operator=(const SteppedSession&) = delete;
 
     /// Runs one tick. A hand or a time that is not finite, or a time that does not rise, gives zero force in this tick
-    /// and counts as a device that answers nonsense. Nor does one that is not there have a force: the tool stays where a
-    /// hand was last, and touches nothing before one was anywhere. A velocity of exactly zero is taken from the
-    /// positions of the last
-    /// 15 ms, because many a host has none. Held down for 20 ms, the first button clears the governor's fault.
+    /// and counts as a device that answers nonsense. A hand whose place is not known has no force either: the tool stays
+    /// where a hand was last, and touches nothing before one was anywhere. A velocity of exactly zero is taken from the
+    /// positions of the last 15 ms, because many a host has none. Held down for 20 ms, the first button clears the
+    /// governor's fault.
     /// \param time  [s] rising, from 0 or anywhere
     /// \return the record of the tick, in which `force` is what the governor let through [N]
     const TickRecord& step(double time, const Hand& hand) noexcept;

@@ -202,6 +202,12 @@ TEST(GlbFile, WhatWouldChangeTheTrianglesIsRefusedByName)
         EXPECT_TRUE(contains(refusal(with(R"({"mesh": 0})", R"({"mesh": 0, "weights": )" + std::string(weights) + "}")),
                              {"node 0", "weights"}));
     EXPECT_EQ(read(with(R"({"mesh": 0})", R"({"mesh": 0, "weights": [0, 0]})")).faces, read(with("", "")).faces);
+    const std::string own = with(R"({"primitives")", R"({"weights": [1], "primitives")");
+    EXPECT_TRUE(contains(refusal(own), {"mesh 0", "weights"}));
+    std::string       unmixed = own; // a node's weights stand for its mesh's
+    const std::string node    = R"({"mesh": 0})";
+    unmixed.replace(unmixed.find(node), node.size(), R"({"mesh": 0, "weights": [0]})");
+    EXPECT_EQ(read(unmixed).faces, read(with("", "")).faces);
 }
 
 TEST(GlbFile, ExtensionsOfMaterialsAndTexturesChangeNoTriangle)

@@ -517,9 +517,14 @@ TEST(ShellPatch, ATipThatIsSteepKeepsNoWindowNarrow)
     EXPECT_NEAR(wanted, 5 * 20e-3, 5e-3) << "28 lengths would be 125 mm, but five radii are the most";
     EXPECT_GT(settledFor(cigar, settings).window, 70e-3) << "as wide as this half of it";
     EXPECT_GE(settledFor(cigar, settings).cells, 96) << "in which a cell is a fifth of a dent's length";
-    settings.cells = 16;
-    EXPECT_EQ(settledFor(cigar, settings).cells, 32) << "no more than twice as many";
+    settings.cells = 32;
     EXPECT_NEAR(settledFor(cigar, settings).window, 32 * 2e-3 / 1.25, 1e-9) << "what cells carry a fingertip";
+    settings.cells           = 40;
+    settings.footprintRadius = 4e-3;
+    EXPECT_EQ(settledFor(cigar, settings).cells, 80) << "no more than twice as many";
+    settings.theory     = Theory::plate;
+    settings.foundation = 1e6;
+    EXPECT_EQ(settledFor(cigar, settings).cells, 40) << "a plate's dents are as its window";
 }
 
 TEST(ShellPatch, CurvatureIsKeptForOneThickness)

@@ -13,6 +13,7 @@
 
 #include "engine/session/recorded_session.h"
 #include "engine/session/scene.h"
+#include "engine/session/servo.h"
 #include "tests/support/temporary_folder.h"
 
 namespace palp {
@@ -167,6 +168,47 @@ TEST_F(AbsentHand, ThatIsLostAndFoundIsOnTheSideWhereItWas)
     const TickRecord pressed = go(session, {0, 0, -1e-3}, 0.6);
     EXPECT_GT(pressed.force.z, 0.05);
     EXPECT_GT(pressed.normal.z, 0.5);
+}
+
+/// A device that never tells its place leaves the tool where the hand has come from, on that side of the surface.
+TEST(ContactHalf, AHandWithoutAPlaceIsWhereItHasComeFrom)
+{
+    const auto       own    = std::make_shared<const LoadedCloud>(ownPoints());
+    const Scene      scene  = ownScene();
+    const SoftObject object = objectOf(*own, scene).object;
+    const glm::dvec3 from(0, 0, 6e-3);
+    ContactHalf      contact(object, scene, from);
+    Hand             hand{.position = {0, 0, -3e-3}};
+    hand.device = DeviceFault::startingUp;
+    for (int n = 0; n < 3; ++n) {
+        const ProxyContact& held = contact.tick(1e-3 * n, hand, {});
+        EXPECT_EQ(held.touch.point, from);
+        EXPECT_TRUE(held.behind) << "no force, wherever it turns up";
+        EXPECT_EQ(held.touch.sequence, 0U) << "nothing to solve";
+    }
+    hand.device             = DeviceFault::none;
+    const ProxyContact held = contact.tick(3e-3, hand, {});
+    EXPECT_TRUE(held.touch.touching);
+    EXPECT_GT(held.touch.outward.z, 0.5) << "it hangs below the surface, which it has come from above";
+}
+
+/// A hand that its device goes on telling of is followed, though no force flows: round an edge it is on the other side.
+TEST_F(AbsentHand, WhoseDeviceHasStoppedByItselfIsFollowed)
+{
+    const auto     own   = std::make_shared<const LoadedCloud>(ownPoints());
+    const Scene    scene = ownScene();
+    SteppedSession session(objectOf(*own, scene).object, scene, {}, own);
+    go(session, at_, 0.5);
+    for (const glm::dvec3& to : {glm::dvec3(60e-3, 0, 6e-3), {60e-3, 0, -20e-3}, {0, 0, -20e-3}})
+        for (int n = 0; n < 200; ++n) {
+            at_ = glm::mix(at_, to, 0.05);
+            Hand stopped{.position = at_};
+            stopped.device = DeviceFault::ownWatchdog;
+            EXPECT_EQ(session.step(time_ += 1e-3, stopped).force, glm::dvec3(0));
+        }
+    const TickRecord there = go(session, at_, 0.5);
+    EXPECT_EQ(there.normal, glm::dvec3(0)) << "in the air below";
+    EXPECT_NEAR(there.proxy.z, at_.z, 1e-9);
 }
 
 /// The first button is the clutch: held down after a fault it resets that too, as every first button does.

@@ -253,6 +253,14 @@ TEST(Clutch, HeldFromTheStartTheToolIsWhereTheDeviceIs)
     EXPECT_EQ(clutch.step(state, false).position, state.position);
     state.position = {7, 8, 9};
     EXPECT_EQ(clutch.step(state, false).position, glm::dvec3(4, 5, 6));
+    state.buttons  = 0;
+    state.fault    = DeviceFault::silent;
+    state.position = {0, 0, 0};
+    EXPECT_EQ(clutch.step(state, false).position, glm::dvec3(4, 5, 6)) << "a place that nobody knows moves no tool";
+    EXPECT_FALSE(clutch.isHeld());
+    state.fault    = DeviceFault::none;
+    state.position = {7.5, 8, 9};
+    EXPECT_EQ(clutch.step(state, false).position, glm::dvec3(4.5, 5, 6));
 }
 
 /// What a user is told before the hand touches.

@@ -224,8 +224,14 @@ private:
             const Json&      node = element("nodes", n);
             const glm::dmat4 here = above * transformOf(node, what);
             if (has(node, "skin")) fail(what + ": expected no skin, which bends its mesh; save the mesh as it is bent");
-            failIfMorphed(node, what);
-            if (has(node, "mesh")) takeMesh(index(node, "mesh", what), here);
+            if (has(node, "mesh")) {
+                const std::uint64_t mesh = index(node, "mesh", what);
+                if (has(node, "weights")) // in place of the mesh's
+                    failIfMorphed(node, what);
+                else
+                    failIfMorphed(element("meshes", mesh), "mesh " + std::to_string(mesh));
+                takeMesh(mesh, here);
+            }
             if (has(node, "children")) add(list(node, "children", what), here);
         }
     }
@@ -245,7 +251,6 @@ private:
     void takeMesh(std::uint64_t n, const glm::dmat4& place)
     {
         const std::string what = "mesh " + std::to_string(n);
-        failIfMorphed(element("meshes", n), what);
         for (const Json& primitive : list(element("meshes", n), "primitives", what)) {
             constexpr std::uint64_t kLook = 64; // [bytes] that a look at a part counts as: nodes may repeat a mesh
             reader_.checkUnpacked(bytes_ += kLook);

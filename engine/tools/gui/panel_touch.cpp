@@ -61,7 +61,7 @@ void drawTheory(const PanelDesk& desk, const Patch& patch)
 
 void drawNumbers(const PanelDesk& desk)
 {
-    constexpr double   kMostLess = 0.97; // of the object's: the contact is that of the patch's middle [1]
+    constexpr double   kMostLess = 0.9; // of the object's: the contact is that of the patch's middle [1]
     const TickRecord&  now       = desk.content.history.newest();
     const bool         held      = desk.content.touching && now.normal != glm::dvec3(0);
     const Patch* const patch     = desk.content.patch;
@@ -69,15 +69,15 @@ void drawNumbers(const PanelDesk& desk)
     const double       kc        = patch ? patch->contactStiffness : 0;
     const bool         known     = held && now.compliance > 0 && kc > 0;
     const double       felt      = known ? feltStiffness(desk.content.scene.patch.forceLaw, kc, now.compliance) : 0;
-    const bool         steady = desk.content.scene.material.isLinear() && desk.content.scene.patch.large == Large::off;
-    const bool         capped = known && steady && now.stiffness < kMostLess * felt;
+    const bool         steady  = desk.content.scene.material.isLinear() && desk.content.scene.patch.large == Large::off;
+    const bool         limited = known && steady && now.stiffness < kMostLess * felt;
     reading(desk, Half::left, "force", desk.content.touching ? formatted("%.2f N", glm::length(now.force)) : "\u2013");
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
     reading(desk, Half::left, "felt",
-            !known ? "\u2013" : formatQuantity(now.stiffness, "N/m") + (capped ? " cap" : ""));
-    if (capped)
+            !known ? "\u2013" : formatQuantity(now.stiffness, "N/m") + (limited ? " limited" : ""));
+    if (limited)
         tip(("The object's is " + formatQuantity(felt, "N/m") +
-             ". The scene's stiffness_cap, the device or a slow loop limits it")
+             ". The scene's stiffness_cap, the device, a slow loop or the energy tank holds it back")
                 .c_str());
     reading(desk, Half::right, "rigidity", orDash(formatQuantity(now.rigidity, "N m")));
     reading(desk, Half::left, "dent", orDash(formatted("%.3f mm", now.maxDeflection * 1e3)));

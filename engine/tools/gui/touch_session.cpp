@@ -79,12 +79,12 @@ void TouchSession::runWith(const WorkbenchHand& hand, const OnView& onView)
         tap_.emplace(recorder_.recording(), settings_.streams);
     }
     real.onStart = [this](std::chrono::steady_clock::time_point start) { tap_->begin(start); };
-    std::optional<glm::dvec3> tool; // [m] in the last tick
+    std::optional<glm::dvec3> tool; // [m] in the last tick in which the device knew its place
     bool                      clutched = false;
     real.onTick = [this, &tool, &clutched, clear = stage_->object().spacing()](const TickRecord& record) {
-        tool = record.proxy + clear * record.normal; // off the surface, so that its side is known
         Hand then;
         then.setBits(record.device);
+        if (then.hasPlace()) tool = record.proxy + clear * record.normal; // off the surface, so that its side is known
         clutched = clutched || then.clutched;
         static_cast<void>(ring_.push(record)); // curves may have gaps
         tap_->push(record);
