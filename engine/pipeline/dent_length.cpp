@@ -335,7 +335,7 @@ BeyondShell beyondShell(const SoftObject& object, const PatchSettings& settings,
     for (const Bend& bend : bendsOf(object, settings)) {
         const double curvature = std::abs(bend.most);
         all += bend.area;
-        if (curvature * window > 8 * kMostSag) beyond.deep += bend.area; // as a parabola sags
+        if (curvature * window > 8 * mostSag(bend.most, bend.least)) beyond.deep += bend.area; // as a parabola sags
         if (curvature * object.material().thickness > kMostThick) beyond.thick += bend.area;
     }
     if (!(all > 0)) return {};

@@ -17,6 +17,11 @@ inline constexpr double kFewestCells = 1.25;
 /// Sag of a surface over the width of its patch window up to which the theory of shallow shells holds [1].
 inline constexpr double kMostSag = 0.25;
 
+/// The same of what bulges both ways, where a dent dies away before the surface is steep [1]: spheres that sag by a half
+/// are felt within 1 % of shallow ones, sides of ellipsoids by 0.28 within 2.4 % of whole bodies, cigars by 0.57 and 0.72
+/// within 5.1.
+inline constexpr double kMostSagOfDome = 0.4;
+
 /// Thickness over the smaller radius of curvature up to which a sheet counts as thin [1].
 inline constexpr double kMostThick = 0.1;
 
@@ -26,6 +31,12 @@ inline constexpr double kOneWay = 0.02;
 
 /// The same from which on it surely bulges both ways [1]: bodies down to it were compared with solids.
 inline constexpr double kBothWays = 0.1;
+
+/// Returns the sag that a surface of these principal curvatures may have, the larger by size first [1].
+[[nodiscard]] constexpr double mostSag(double most, double least) noexcept
+{
+    return least / most > kBothWays ? kMostSagOfDome : kMostSag;
+}
 
 /// Returns the width beyond which the edges of a plate's window on a foundation are not felt, in lengths l =
 /// (D/k)^(1/4) [1].
@@ -75,7 +86,7 @@ struct DentLengths {
 
 /// Shares of a shell's surface about which a touch leaves its theory, and warns [1].
 struct BeyondShell {
-    double deep  = 0; ///< the patch window sags by more than kMostSag
+    double deep  = 0; ///< the patch window sags by more than mostSag()
     double thick = 0; ///< the sheet is thicker than kMostThick of its smaller radius of curvature
 };
 

@@ -64,12 +64,12 @@ std::string withOneDecimal(double value)
 /// narrower windows give. What is curved one way lets a dent run on: a tube is felt softer by 14 and 56 % in a window
 /// that sags 30 and 50 %.
 /// \param sag     over the width of the window [1]
-/// \param bulges  both ways
-std::string tooDeep(double sag, bool bulges)
+/// \param limit   that it may have [1]
+std::string tooDeep(double sag, double limit)
 {
     return "the surface is too deep for the theory of shallow shells: it sags " + withOneDecimal(100 * sag) +
-           " % of the patch window's width, expected at most 25; " +
-           (bulges
+           " % of the patch window's width, expected at most " + std::to_string(std::lround(100 * limit)) + "; " +
+           (limit > kMostSag
                 ? "where it bulges both ways a dent hardly feels that: whole bodies that another program computed were "
                   "felt within some 10 %"
                 : "a wider window is felt softer, a narrower one stiffer, and the object's supports decide: see the "
@@ -176,10 +176,9 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
                                                   : "curved one way") +
             " here, so that a dent reaches as far as the object: how it is held decides, see the support range, "
             "and --edges");
-    const double     mostSag = whole && !patch.spans ? kMostSagOfWhole : kMostSag;
-    constexpr double kKnown  = 0.8; // q, see givesWay() [1]
-    if (patch.sag > mostSag + kShown)
-        result.push_back(whole ? tooDeepAsAWhole(patch.sag) : tooDeep(patch.sag, least / most > kBothWays));
+    const double     limit  = whole ? (patch.spans ? kMostSag : kMostSagOfWhole) : mostSag(most, least);
+    constexpr double kKnown = 0.8; // q, see givesWay() [1]
+    if (patch.sag > limit + kShown) result.push_back(whole ? tooDeepAsAWhole(patch.sag) : tooDeep(patch.sag, limit));
     if (std::abs(std::log(patch.curvedBending)) > kKnown)
         result.push_back("its points move far along its curved surface, which makes it " +
                          std::string(patch.curvedBending < 1 ? "stiffer" : "softer") +

@@ -114,10 +114,10 @@ TEST(DentLength, MembraneAndFoundationAddUp)
 TEST(DentLength, WhereAWindowIsTooDeepAndASheetTooThickIsKnownBeforeATouch)
 {
     const auto in = [](const SoftObject& object, double window) { return beyondShell(object, shell(), window); };
-    // A sphere sags by W / (8 R) of a window's width: by a fourth where it is 2 R wide.
+    // A sphere sags by W / (8 R) of a window's width: by two fifths where it is 3.2 R wide.
     const SoftObject ball = sphere(50e-3);
-    EXPECT_EQ(in(ball, 95e-3).deep, 0);
-    EXPECT_EQ(in(ball, 105e-3).deep, 1);
+    EXPECT_EQ(in(ball, 155e-3).deep, 0);
+    EXPECT_EQ(in(ball, 165e-3).deep, 1);
     EXPECT_EQ(in(ball, 105e-3).thick, 0) << "1 mm of 50";
     EXPECT_EQ(in(sphere(9e-3), 5e-3).thick, 1) << "1 mm of 9";
     EXPECT_EQ(in(sheet([](double, double) { return 0; }), 1).deep, 0) << "a plane never sags";

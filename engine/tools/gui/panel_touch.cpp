@@ -74,7 +74,7 @@ void drawNumbers(const PanelDesk& desk)
     reading(desk, Half::left, "force", desk.content.touching ? formatted("%.2f N", glm::length(now.force)) : "\u2013");
     reading(desk, Half::right, "depth", orDash(formatted("%.2f mm", penetration(now) * 1e3)));
     reading(desk, Half::left, "felt",
-            !known ? "\u2013" : formatQuantity(now.stiffness, "N/m") + (limited ? " limited" : ""));
+            !known ? "\u2013" : formatQuantity(now.stiffness, "N/m") + (limited ? " cap" : ""));
     if (limited)
         tip(("The object's is " + formatQuantity(felt, "N/m") +
              ". The scene's stiffness_cap, the device, a slow loop or the energy tank holds it back")
