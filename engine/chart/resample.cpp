@@ -20,15 +20,20 @@ void takeNearest(const PatchWindow& window, std::span<const ChartPoint> position
     const PlateGrid&                 grid    = window.grid;
     const std::vector<std::uint32_t> nearest = nearestPoint(grid, window.corner, positions, std::max(exact, nearby));
     std::size_t                      n = 0, without = 0;
+    double                           bareFrom = std::numeric_limits<double>::infinity();
     for (int i = 0; i < grid.nodesX(); ++i)
         for (int j = 0; j < grid.nodesZ(); ++j, ++n) {
             const ChartPoint& point = positions[nearest[n]];
             const double      x     = point.x - window.corner.x - i * grid.spacingX;
             const double      z     = point.z - window.corner.z - j * grid.spacingZ;
-            without += x * x + z * z > nearby * nearby;
+            if (x * x + z * z <= nearby * nearby) continue;
+            ++without;
+            bareFrom = std::min(
+                bareFrom, std::hypot((i - 0.5 * grid.cellsX) * grid.spacingX, (j - 0.5 * grid.cellsZ) * grid.spacingZ));
         }
     for (std::size_t v = 0; v < values.size(); ++v) {
         results[v].nodesWithoutPoint = without;
+        results[v].bareFrom          = bareFrom;
         std::vector<double>& nodes   = results[v].rigidity.values();
         for (n = 0; n < nodes.size(); ++n)
             if (std::isnan(nodes[n])) nodes[n] = values[v][nearest[n]];

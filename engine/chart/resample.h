@@ -37,6 +37,7 @@ enum class Sampling { places, means };
 struct Resampled {
     NodeField   rigidity;              ///< D [N m] at the nodes
     std::size_t nodesWithoutPoint = 0; ///< nodes that had no point nearby and took the nearest one's value
+    double      bareFrom = std::numeric_limits<double>::infinity(); ///< of them, the nearest to the window's middle [m]
 };
 
 /// Returns how far along either axis the log-mean looks for points: 4 s, where the weight is 3e-4 [m].
@@ -72,7 +73,7 @@ struct Resampled {
 /// Computes several quantities of the same points at the nodes, each as resampleRigidity() would alone and to its bits,
 /// in less time than one after the other.
 /// \param exact  [m] nodes from which every point is farther may take another near one's value, see nearestPoint()
-/// \return  in their order; nodesWithoutPoint is the same in all
+/// \return  in their order; nodesWithoutPoint and bareFrom are the same in all
 [[nodiscard]] std::vector<Resampled> resampleAll(const PatchWindow& window, std::span<const ChartPoint> positions,
                                                  std::span<const PointValues> values, Resampling resampling,
                                                  double pointSpacing, double sparsest = 0,

@@ -413,6 +413,7 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest,
                                                    patch.coarse ? Sampling::means : Sampling::places, exact);
     patch.nodesWithoutPoint          = resampled[0].nodesWithoutPoint;
+    patch.bareFrom                   = resampled[0].bareFrom;
     patch.plate = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
                    std::move(resampled[0].rigidity)};
     refuseIfEmpty(patch, settings);

@@ -17,9 +17,9 @@ inline constexpr double kFewestCells = 1.25;
 /// Sag of a surface over the width of its patch window up to which the theory of shallow shells holds [1].
 inline constexpr double kMostSag = 0.25;
 
-/// The same of what bulges both ways, where a dent dies away before the surface is steep [1]: spheres that sag by a half
-/// are felt within 1 % of shallow ones, sides of ellipsoids by 0.28 within 2.4 % of whole bodies, cigars by 0.57 and 0.72
-/// within 5.1.
+/// The same of what bulges both ways, where a dent dies away before the surface is steep [1]: spheres that sag by a
+/// half are felt within 1 % of shallow ones, sides of ellipsoids by 0.28 within 2.4 % of whole bodies, cigars by 0.57
+/// and 0.72 within 5.1.
 inline constexpr double kMostSagOfDome = 0.4;
 
 /// Thickness over the smaller radius of curvature up to which a sheet counts as thin [1].
@@ -59,8 +59,8 @@ struct DentReach {
     /// Width of a patch window that it hardly feels the edges of, in these lengths [1]: kLocalWindow, and more where
     /// one curvature is more than 1.35 times the other. Constant curvatures in ratios of 1, 1.5, 2, 3, 5 and 8 are felt
     /// within 1.5 % of their limit of wide windows from 8, 8, 10.5, 13.5, 20 and 26 lengths on, the window's corners
-    /// along the principal directions. Without a foundation it is no wider than five of the smallest radii of curvature, and than two where
-    /// the other one is next to nothing.
+    /// along the principal directions. Without a foundation it is no wider than five of the smallest radii of
+    /// curvature, and than two where the other one is next to nothing.
     double window = kLocalWindow;
 };
 

@@ -143,7 +143,8 @@ struct Patch {
     double      spacing     = 0; ///< typical distance of neighbouring points at the contact [m]
     double      noise       = 0; ///< standard deviation of the points there about the surface [m]
     double      thickness   = 0; ///< of the object at the contact [m]
-    std::size_t nodesWithoutPoint = 0; ///< see Resampled
+    std::size_t nodesWithoutPoint = 0;                                       ///< see Resampled
+    double      bareFrom          = std::numeric_limits<double>::infinity(); ///< [m] likewise
     NodeField   inside{}; ///< how deep the nodes lie within the object's border where the window spans it [m], see
                           ///< depthWithin(); empty: there is no border
     NodeField covered{};  ///< share of the sheet at the nodes, where the window spans the object [1]; empty: all

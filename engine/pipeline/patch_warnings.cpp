@@ -122,6 +122,23 @@ std::string widerWindow(double width, const PatchSettings& settings)
                                      : "");
 }
 
+/// Returns how far the dent of a shell reaches about the contact.
+DentReach reachAt(const Patch& patch, const PatchSettings& settings, const Material& material)
+{
+    const auto [most, least] = patch.principal;
+    return dentReach(most, least, material, settings.foundation / rigidityAtContact(patch));
+}
+
+/// Returns whether nodes without a point may be felt: not those in the corners of a window that reaches round a body
+/// that bulges both ways, where the dent has died away before.
+bool mayBeFelt(const Patch& patch, const PatchSettings& settings, const Material& material)
+{
+    const auto [most, least] = patch.principal;
+    if (!patch.curvature || !(least / most > kBothWays)) return true;
+    const DentReach reach = reachAt(patch, settings, material);
+    return patch.bareFrom < reach.window * reach.length / 2;
+}
+
 /// Returns whether a surface is curved otherwise from place to place: where it is not, as on a tube or a saddle, it
 /// lies off a sphere and has no folds.
 bool varies(const CurvatureField& field)
@@ -159,10 +176,9 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
     const auto [most, least] = patch.principal;
     const bool   whole       = settings.windowOf == WindowOf::object;
     const double window = bentSize(patch), lengths = window / patch.shellLength;
-    const bool   bent = std::abs(most) * window >= kHardly;
-    const bool   ends = (bent && least / most > kOneWay) || settings.foundation > 0; // dents, somewhere
-    const double asked =
-        dentReach(most, least, material, settings.foundation / rigidityAtContact(patch)).window; // [lengths]
+    const bool   bent  = std::abs(most) * window >= kHardly;
+    const bool   ends  = (bent && least / most > kOneWay) || settings.foundation > 0; // dents, somewhere
+    const double asked = reachAt(patch, settings, material).window;                   // [lengths]
     if (!whole && lengths < kNearly * asked && ends)
         result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
                          formatQuantity(patch.shellLength, "m") + " each), so that its edges are felt; " +
@@ -257,7 +273,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     addThick(result, patch);
     const bool   whole  = settings.windowOf == WindowOf::object;
     const double window = patch.window.grid.sizeX(); // [m]
-    if (patch.nodesWithoutPoint > 0 && !whole)
+    if (patch.nodesWithoutPoint > 0 && !whole && mayBeFelt(patch, settings, material))
         result.push_back(
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
             " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "

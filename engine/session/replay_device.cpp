@@ -19,7 +19,6 @@ HapticState ReplayDevice::read(double now) noexcept
     HapticState state;
     state.time = now;
     if (next_ == records_.size()) {
-        if (!records_.empty()) state.position = records_.back().hip;
         state.fault = DeviceFault::unplugged;
         return state;
     }

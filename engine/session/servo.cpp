@@ -54,21 +54,20 @@ ContactHalf::ContactHalf(const SoftObject& object, const Scene& scene, const std
 {
     if (!from) return;
     proxy_.step(*from);
-    hip_    = *from;
-    isFree_ = false;
+    held_.touch.point = *from;
+    isFree_           = false;
 }
 
 const ProxyContact& ContactHalf::tick(double time, const Hand& hand, const glm::dvec3& lean) noexcept
 {
-    if (hand.hasPlace()) hip_ = hand.position;
     isKnown_ = isKnown_ || hand.hasPlace();
     if (!isKnown_) {
-        held_.touch.time  = time;
-        held_.touch.point = isFree_ ? hand.position : hip_;
-        held_.behind      = !isFree_;
+        held_.touch.time = time;
+        held_.behind     = !isFree_;
+        if (isFree_) held_.touch.point = hand.position;
         return held_;
     }
-    const glm::dvec3  place = hip_ + lean;
+    const glm::dvec3  place = hand.position + lean;
     const ProxyState& proxy = proxy_.step(place);
     isFree_                 = isFree_ || (!proxy.touching && proxy.position == place);
     motion_.add(time, proxy.position);

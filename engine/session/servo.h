@@ -123,8 +123,8 @@ public:
     ///                begins in free space
     ContactHalf(const SoftObject& object, const Scene& scene, const std::optional<glm::dvec3>& from = {});
 
-    /// Runs one tick of the proxy. A hand whose place is not known moves nothing: the proxy is first placed where a hand is
-    /// known to be, since that place decides on which side of the surface it is.
+    /// Runs one tick of the proxy. It is first placed where a hand is known to be, since that place decides on which
+    /// side of the surface it is. Later a hand whose place is not known stays, see Clutch.
     /// \param time  [s] of the session's clock
     /// \param lean  [m] the latest of the force, ForceHalf::lean()
     const ProxyContact& tick(double time, const Hand& hand, const glm::dvec3& lean) noexcept;
@@ -135,8 +135,7 @@ private:
     Proxy        proxy_;
     RecentMotion motion_;
     ProxyContact held_;
-    glm::dvec3   hip_{};           ///< [m] where the hand was last
-    bool         isKnown_ = false; ///< it was somewhere
+    bool         isKnown_ = false; ///< the hand was somewhere
     bool         isFree_  = true;  ///< it was in free space
 };
 

@@ -123,21 +123,18 @@ const TickRecord& SteppedSession::step(double time, const Hand& given) noexcept
     if (rises) s.time = time;
     s.begun = true;
     ++s.steps;
-    Hand hand = given;
+    Hand hand = good ? given : s.hand;
     if (hasPlace) {
         if (ForceGovernor::isJump(glm::length(given.position - s.hand.position), dt)) s.moved.restart();
         s.hand = given;
         s.moved.add(s.time, given.position);
         if (given.velocity == glm::dvec3(0)) hand.velocity = s.moved.velocity(); // many a host has none
-    } else { // no place of a hand, by which a tool could move
-        hand.position    = s.hand.position;
-        hand.velocity    = {};
-        hand.orientation = s.hand.orientation;
-        if (!good) hand.device = DeviceFault::kinematics;
+    } else if (!good) {
+        hand.device = DeviceFault::kinematics;
     }
     hand.answerTime = s.time;
     hand.sequence   = s.steps;
-    holdByClutch(hand, s.clutch);
+    holdByClutch(hand, s.clutch); // also where its place is not known
     s.last   = s.servo.tick({s.time, dt}, hand, s.loop.newest(s.servo.tableInUse()));
     s.zeroed = !good || (s.zeroed && s.last.force != glm::dvec3(0));
     if (s.zeroed) s.last.force = {};

@@ -462,6 +462,22 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     EXPECT_FALSE(says("lengths of the shell wide", wide));
 }
 
+/// Corners of a wide window that reach round a body are not felt; a hole beside the finger is.
+TEST(ShellPatch, NodesWithoutAPointAreSaidWhereADentReaches)
+{
+    PatchSettings wide     = kShell;
+    wide.window            = 70e-3;
+    wide.cells             = 96;
+    const SoftObject ball  = ellipsoid(glm::dvec3(18e-3), 0);
+    const Patch      round = touchOf(ball, {0, 0, 18e-3}, wide);
+    EXPECT_GT(round.nodesWithoutPoint, 0U) << "or it shows nothing";
+    EXPECT_FALSE(warned(round, wide, "no point nearby"));
+    std::vector<glm::dvec3> points;
+    for (const glm::dvec3& p : ball.positions())
+        if (glm::distance(p, glm::dvec3(8e-3, 0, std::sqrt(260.0) * 1e-3)) > 3e-3) points.push_back(p);
+    EXPECT_TRUE(warned(touchOf(objectOf(std::move(points)), {0, 0, 18e-3}, wide), wide, "no point nearby"));
+}
+
 /// A tube of 20 mm about the x axis, 200 mm long.
 SoftObject tubeOf20()
 {

@@ -125,12 +125,17 @@ protected:
         return last;
     }
 
-    /// Says for some ticks that there is no hand.
-    void lose(SteppedSession& session, const glm::dvec3& said, int ticks)
+    /// Says for some ticks that there is no hand; returns the last one.
+    TickRecord lose(SteppedSession& session, const glm::dvec3& said, int ticks)
     {
         Hand lost{.position = said};
         lost.device = DeviceFault::silent;
-        for (int n = 0; n < ticks; ++n) EXPECT_EQ(session.step(time_ += 1e-3, lost).force, glm::dvec3(0));
+        TickRecord last;
+        for (int n = 0; n < ticks; ++n) {
+            last = session.step(time_ += 1e-3, lost);
+            EXPECT_EQ(last.force, glm::dvec3(0));
+        }
+        return last;
     }
 
     glm::dvec3 at_{0, 0, 6e-3}; ///< [m]
@@ -162,7 +167,9 @@ TEST_F(AbsentHand, ThatIsLostAndFoundIsOnTheSideWhereItWas)
     const Scene    scene = ownScene();
     SteppedSession session(objectOf(*own, scene).object, scene, {}, own);
     go(session, at_, 0.5);
-    lose(session, {0, 0, -20e-3}, 300);
+    const TickRecord lost = lose(session, {0, 0, -20e-3}, 300);
+    EXPECT_EQ(lost.hip, at_);
+    EXPECT_EQ(lost.proxy, at_) << "the tool stays where the hand was last";
     at_ = {0, 0, 5e-4};
     go(session, {0, 0, 3e-3}, 0.6);
     const TickRecord pressed = go(session, {0, 0, -1e-3}, 0.6);

@@ -407,7 +407,6 @@ void CloudRows::mergePlaces()
             stiffness_[place] = std::exp(std::log(stiffness_[place]) + above[place] / points[place]);
         if (!normals_.empty()) normals_[place] = directionOf(normals_[place].x, normals_[place].y, normals_[place].z);
     }
-    if (!repeats_) report_.duplicatePositions = places.size() - count;
     positions_.resize(count);
     stiffness_.resize(count);
     for (std::vector<double>& other : others_)
@@ -415,6 +414,7 @@ void CloudRows::mergePlaces()
     if (!normals_.empty()) normals_.resize(count);
     places_ = std::move(places);
     if (repeats_) return;
+    report_.duplicatePositions = places_.size() - count;
     warn(counted(report_.duplicatePositions, "point", "lies", "lie") +
          " exactly where an earlier one lies; points at one place are merged");
 }

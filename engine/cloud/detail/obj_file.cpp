@@ -39,19 +39,15 @@ public:
     }
 
 private:
-    static bool isComment(std::string_view line)
-    {
-        const std::size_t first = line.find_first_not_of(" \t");
-        return first != std::string_view::npos && line[first] == '#';
-    }
-
     /// Returns the next line, with those that a backslash at its end adds to it.
     std::optional<std::string_view> wholeLine()
     {
         auto line = reader_.line();
         if (line && reader_.lineNumber() == 1 && line->starts_with(kByteOrderMark))
             line->remove_prefix(kByteOrderMark.size());
-        if (!line || !line->ends_with('\\') || isComment(*line)) return line; // a comment may end in a folder's name
+        if (!line || !line->ends_with('\\')) return line;
+        std::string_view rest = *line;
+        if (nextWord(rest).starts_with('#')) return line; // a comment may end in a folder's name
         joined_.clear();
         for (; line && line->ends_with('\\'); line = reader_.line()) {
             joined_.append(line->substr(0, line->size() - 1)).append(" ");
