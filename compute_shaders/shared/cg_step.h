@@ -91,7 +91,7 @@ CgStep stepOf(real pq, real rz, real beta, real energy, real lastAlpha, real las
                           kBoundShare * leftAtMost(now.slowest, now.alpha, beta, lastAlpha, rz));
     }
     real all     = max(max(energy, real(0.0f)) + now.gain, left); // an estimate is at most 1
-    now.estimate = all > real(0.0f) ? sqrt(left / all) : real(0.0f);
+    now.estimate = all > real(0.0f) ? sqrt(left / all) : sqrt(abs(rz)); // 0 without a load; NaN is no answer
     return now;
 }
 

@@ -1,6 +1,7 @@
 #include "engine/plate/plate_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <exception>
@@ -8,6 +9,7 @@
 #include <list>
 #include <numeric>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "engine/compute/context.h"
@@ -38,9 +40,11 @@ bool fitsReference(const PlateGrid& grid)
     return grid.nodes() <= 513 * 513;
 }
 
-std::string stoppedAt(const SolveReport& report)
+std::string stoppedAt(const SolveReport& report, double tolerance)
 {
     if (std::isnan(*report.errorEstimate)) return "the multigrid solver did not converge"; // some shells
+    if (*report.errorEstimate <= tolerance)
+        return "to the multigrid solver the plate is held too softly: rounding may hide how it moves as a whole";
     return "the multigrid solver stopped at an error of about " + formatNumber(*report.errorEstimate);
 }
 
@@ -202,19 +206,22 @@ bool mayHaveRims(const Plate& plate)
     return of.most > MultigridPlateSolver::kRimContrast * of.least;
 }
 
-/// Returns the least time of three calls, after one that is not timed [ms].
+/// Returns the median time of five calls, after one that is not timed [ms].
+/// \param apart  from the end of a call to the next [s]
 template <class Call>
-double leastTime(const PlateSolver::Clock& clock, const Call& call)
+double usualTime(const PlateSolver::Clock& clock, double apart, const Call& call)
 {
     const auto now = [&] { return clock ? clock() : wallMilliseconds(); };
     call();
-    double least = std::numeric_limits<double>::infinity();
-    for (int n = 0; n < 3; ++n) {
+    std::array<double, 5> times;
+    for (double& time : times) {
+        std::this_thread::sleep_for(std::chrono::duration<double>(apart));
         const double began = now();
         call();
-        least = std::min(least, now() - began);
+        time = now() - began;
     }
-    return least;
+    std::ranges::nth_element(times, times.begin() + times.size() / 2);
+    return times[times.size() / 2];
 }
 
 } // namespace
@@ -369,7 +376,7 @@ struct PlateSolver::Multigrid {
 
     [[nodiscard]] double timeOf(const PlateTrial& trial, const Clock& clock)
     {
-        return leastTime(clock, [&] {
+        return usualTime(clock, trial.apart, [&] {
             (void)solve(trial.plate, trial.loads, trial.loads.size() / 2, trial.tolerance, PlateSolver::kAsWorks);
         });
     }
@@ -537,8 +544,9 @@ private:
 struct PlateSolver::Learned {
     MemoryShortage shortage; ///< of the processor's memory for one load, in nodes
     std::string    shortageNote;
-    HardPlates     hard;   ///< for multigrid
-    HardPlates     beyond; ///< multigrid, and the reference solves them no better
+    HardPlates     hard;     ///< for multigrid
+    HardPlates     beyond;   ///< multigrid, and the reference solves them no better
+    HardPlates     inFloats; ///< for a processor without doubles, and the host solves them
 };
 
 PlateSolver::PlateSolver(std::string_view wanted, double patience, SoftwareBits bits)
@@ -637,6 +645,10 @@ PlateSolver::Multigrid& PlateSolver::bestFor(const Plate& plate, double toleranc
                 " does not solve for inclusions exactly, as the host may where the rigidity jumps";
         return host();
     }
+    if (const std::string* why = processor_->isHost() ? nullptr : learned_->inFloats.knownBecause(plate, tolerance)) {
+        note_ = *why;
+        return host();
+    }
     if (processor_->reaches(tolerance)) return *processor_;
     note_ = processor_->context.processor().name + " has no doubles, which a tolerance of " + formatNumber(tolerance) +
             " needs";
@@ -653,8 +665,9 @@ Answer PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solv
         note_ = *why;
         return refer();
     }
-    std::optional<Answer> answer;
-    std::exception_ptr    broken;
+    std::optional<Answer>      answer;
+    std::exception_ptr         broken;
+    std::optional<std::string> tooRound; // why a processor without doubles did not converge
     for (Multigrid* by = &bestFor(plate, tolerance, footprints); by;) {
         const bool last = by->isHost();
         bool       sure = last; // that the host does no better
@@ -663,9 +676,13 @@ Answer PlateSolver::byMultigrid(const Plate& plate, double tolerance, const Solv
             answer = solve(*by);
             if (!last) learned_->shortage.fitted(plate.grid.nodes());
             const SolveReport& report = reportOf(*answer);
-            if (report.converged) return std::move(*answer);
-            note_ = stoppedAt(report);
+            if (report.converged) {
+                if (tooRound) learned_->inFloats.remember(plate, tolerance, *tooRound);
+                return std::move(*answer);
+            }
+            note_ = stoppedAt(report, tolerance);
             sure  = last || by->hasDoubles();
+            if (!sure) tooRound = note_;
         } catch (const compute::ProcessorOutOfMemory& error) {
             if (last) throw;
             note_ = learned_->shortageNote = error.what();
@@ -718,7 +735,7 @@ void PlateSolver::loseProcessor(const std::exception& why)
 double PlateSolver::timeOf(const PlateTrial& trial, const Clock& clock)
 {
     if (processor_) return processor_->timeOf(trial, clock);
-    return leastTime(clock, [&] { (void)byReference(trial.plate, trial.loads, 0, trial.tolerance); });
+    return usualTime(clock, trial.apart, [&] { (void)byReference(trial.plate, trial.loads, 0, trial.tolerance); });
 }
 
 std::vector<PlateSolver::ProcessorTime> PlateSolver::keepFaster(const PlateTrial& trial, const Clock& clock)
@@ -767,7 +784,7 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
     if (auto exact = byFactor(shell, loads, whole, tolerance)) return std::move(*exact);
     if (processor_) solution = byProcessor(shell, loads, whole, tolerance, drawn);
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
-        if (processor_) note_ = stoppedAt(solution.whole.report);
+        if (processor_) note_ = stoppedAt(solution.whole.report, tolerance);
         solution = byReference(shell, loads, whole, tolerance);
     }
     // As DirectShell does: the void's own deflection is nothing that stretches a sheet.

@@ -117,7 +117,7 @@ public:
     /// Returns the time that it is [ms]; only differences count.
     using Clock = std::function<double()>;
 
-    /// Measures the least time of three solves of a trial, each with a new rigidity, after one that compiles kernels
+    /// Measures the median time of five solves of a trial, each with a new rigidity, after one that compiles kernels
     /// and makes memory [ms].
     /// \param clock  empty: the wall clock
     /// \throws Error if the processor cannot solve it

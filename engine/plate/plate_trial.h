@@ -11,6 +11,7 @@ struct PlateTrial {
     Plate                  plate;
     std::vector<Footprint> loads;
     double                 tolerance; ///< [1]
+    double                 apart = 0; ///< from the end of a solve to the next [s]: a GPU that waits lowers its clock
 };
 
 /// Returns a square plate, clamped, of a smooth map of contrast 10, and footprints near its middle.

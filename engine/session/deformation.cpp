@@ -47,8 +47,12 @@ Deformation::Deformation(const SoftObject& object, const Scene& scene)
       solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, settings_, object, solver_)),
       firstLaw_(homogeneousLaw(object, lattice_))
 {
-    if (compute::isProcessorWord(scene.solver, compute::kAutoProcessor))
-        (void)solver_.keepFaster(plateTrial(settings_.cells, int(lattice_.loads.size()), scene.patch.tolerance));
+    if (compute::isProcessorWord(scene.solver, compute::kAutoProcessor)) {
+        constexpr double kLongest = 1.0 / 60; // [s]
+        PlateTrial       trial    = plateTrial(settings_.cells, int(lattice_.loads.size()), scene.patch.tolerance);
+        trial.apart               = std::min(kLongest, 1 / scene.deformationRate);
+        (void)solver_.keepFaster(trial);
+    }
     prepareTouch(object, settings_);
 }
 

@@ -403,6 +403,9 @@ struct MultigridPlateSolver::Impl {
 
     [[nodiscard]] double rounding() const noexcept { return k.doubles ? kRounding : roundingInFloats; }
 
+    /// Returns whether no number of steps is enough.
+    [[nodiscard]] bool isBeyondRounding() const { return rounding() > settings.tolerance || passes.isTooSoft(); }
+
     /// Where a stiff island lies in the rim, floats hide how the soft part holds it, from a contrast of 1e4 on.
     bool factorRims()
     {
@@ -463,6 +466,7 @@ struct MultigridPlateSolver::Impl {
             if (std::isnan(estimate))
                 throw SolverBrokeDown("plate: the solver broke down; the rigidity or the load is out of range");
             if (!(estimate > settings.tolerance) || done >= settings.maxIterations) break;
+            if (!k.doubles && isBeyondRounding()) break; // the host, which has doubles, will do better
             list = &run(&Lists::resume, &Impl::recordResume, done < lastSteps ? lastSteps - done : kBeyond);
             done += int(worst(shared::kStateSteps));
         }
@@ -471,10 +475,9 @@ struct MultigridPlateSolver::Impl {
         report.solver        = context.processor().name;
         report.iterations    = done;
         report.errorEstimate = std::hypot(worst(shared::kStateEstimate), rounding());
-        report.converged = worst(shared::kStateEstimate) <= settings.tolerance && rounding() <= settings.tolerance &&
-                           !passes.isTooSoft();
-        const Lists& used = lists[std::size_t(jumps)];
-        report.workUnits  = passes.workUnits(used.nestedWork) + done * passes.workUnits(used.stepsWork) / used.steps;
+        report.converged     = worst(shared::kStateEstimate) <= settings.tolerance && !isBeyondRounding();
+        const Lists& used    = lists[std::size_t(jumps)];
+        report.workUnits     = passes.workUnits(used.nestedWork) + done * passes.workUnits(used.stepsWork) / used.steps;
         report.processorMilliseconds = processorMilliseconds;
         report.milliseconds          = std::chrono::duration<double, std::milli>(Clock::now() - began).count();
         return report;

@@ -25,7 +25,8 @@ struct DevicesOptions {
     bool json       = false;
 };
 
-constexpr int kTrialCells = 64, kTrialLoads = 25; ///< as sessions have them
+constexpr int    kTrialCells = 64, kTrialLoads = 9; ///< as sessions have them
+constexpr double kTrialApart = 1.0 / 60;            ///< [s]
 
 /// The processors of this machine that can solve plates.
 struct Machine {
@@ -115,8 +116,9 @@ void printText(const DeviceList& haptics)
 void timeCandidates(Machine& machine)
 {
     using enum compute::ProcessorKind;
-    const PlateTrial trial = plateTrial(kTrialCells, kTrialLoads);
-    const auto       time  = [&](int index, const std::string& word) {
+    PlateTrial trial = plateTrial(kTrialCells, kTrialLoads);
+    trial.apart      = kTrialApart;
+    const auto time  = [&](int index, const std::string& word) {
         try {
             machine.trialMs[index] = PlateSolver(word).timeOf(trial);
         } catch (const std::exception& error) {

@@ -388,6 +388,17 @@ TEST_F(CgStepTest, ALoadWithoutAPositiveProductTakesNoStepAndIsNotCalledFinished
     });
 }
 
+/// An estimate of 0 would call it solved.
+TEST_F(CgStepTest, NotANumberIsNoEstimate)
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    for (const double pq : {1.0, 0.0, nan})
+        for (const double energy : {0.0, 1.0, nan}) {
+            const auto now = host::Scalars<double>{}.stepOf(pq, nan, 0, energy, 0, 0, 0, 0, {});
+            EXPECT_TRUE(std::isnan(now.estimate)) << pq << ", " << energy << ": " << now.estimate;
+        }
+}
+
 TEST_F(CgStepTest, ALoadOfNothingIsFinished)
 {
     inEachPrecision([](auto number) {

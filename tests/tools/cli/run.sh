@@ -241,7 +241,7 @@ for key in '"name": "mouse"' '"name": "arm"' '"model"' '"path": null' '"usable":
 bad 'two sorts alone at once' 'excludes' devices --gpus --haptic
 bad 'two other sorts alone at once' 'excludes' devices --processors --haptic
 good 'list of processors' devices --processors
-holds 'for a new map and 25 loads on 64 x 64 cells'
+holds 'for a new map and 9 loads on 64 x 64 cells'
 holds 'host  '
 holds 'usable   yes; sessions with auto take it'
 grep -q 'a simulated arm' out.txt && complain "an arm solves nothing: $(cat out.txt)" || passed=$((passed + 1))
