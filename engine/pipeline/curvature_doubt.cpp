@@ -5,12 +5,15 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "engine/cloud/cloud_quality.h"
 #include "engine/core/quantity.h"
+#include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/curvature_sites.h"
 #include "engine/pipeline/patch_warnings.h"
 
@@ -34,6 +37,42 @@ std::string onSparse(double spacing, double larger, double bias)
            formatQuantity(1 / std::abs(larger), "m") + ": its curvature is read some " + percent(bias) +
            " too strong, expected at most 5, and felt too stiff by up to " + percent(kFelt * bias) +
            "; take points at most " + formatQuantity(dense, "m") + " apart";
+}
+
+/// Says what a curvature that changes within its fits is read as.
+std::string onChanging(double radius, double share)
+{
+    return "the curvature is fitted within " + formatQuantity(radius, "m") +
+           ", and changes within that: where it is largest it is read some " + percent(share) +
+           " too weak, expected at most 5, and felt too soft by up to as much; points that are denser, and without "
+           "noise, are fitted over less";
+}
+
+/// Returns the width of an object's widest border, if it is open: at least half as wide as the object is long [m]; 0 if
+/// not.
+double openWidth(const SoftObject& object)
+{
+    constexpr double kOpen   = 0.5; // [1]
+    const auto       borders = cloudQuality(object).borderWidths;
+    if (borders.empty()) return 0;
+    glm::dvec3 low = object.positions()[0], high = low;
+    for (const glm::dvec3& place : object.positions()) {
+        low  = glm::min(low, place);
+        high = glm::max(high, place);
+    }
+    const glm::dvec3 size = high - low;
+    return borders.front() >= kOpen * std::max({size.x, size.y, size.z}) ? borders.front() : 0;
+}
+
+/// Says that a window about the contact takes an open object for one that goes on. A hemisphere of R 40 mm that is held
+/// at its bottom alone is 4 to 70 times softer than in such a window, and one that is held up to 46 degrees 1.6 to 9
+/// times, 20 to 5 mm from its rim.
+std::string openObject(double width)
+{
+    return "the object is open, with a border " + formatQuantity(width, "m") +
+           " wide, and is taken to go on beyond the patch window: unless that border is held all around, it may be "
+           "felt "
+           "several times too stiff, and the support range does not tell; set window object and what holds it";
 }
 
 using Corner = std::uint32_t;
@@ -75,6 +114,33 @@ double fitBias(double radius, double larger, double smaller) noexcept
     return radius * radius * (kOneWayBias * larger * larger + kBothBias * std::max(0.0, larger * smaller));
 }
 
+double changeBias(const Patch& patch)
+{
+    constexpr double      kPerChange = 0.115, kSome = 0.5; // [1]
+    const CurvatureField& field = *patch.curvature;
+    const PlateGrid&      grid  = patch.plate.grid;
+    const auto [i, j]           = nodeAtContact(patch);
+    const double x = field.x(i, j), z = field.z(i, j), xz = field.xz(i, j);
+    const double turned = 0.5 * std::atan2(2 * xz, x - z); // to the axis of the greater curvature
+    const bool   other  = std::abs(x + z - std::hypot(x - z, 2 * xz)) > std::abs(x + z + std::hypot(x - z, 2 * xz));
+    const double angle  = other ? turned + std::numbers::pi / 2 : turned;
+    const double c = std::cos(angle), s = std::sin(angle);
+    const auto   along = [&](int m, int n) {
+        return c * c * field.x(m, n) + s * s * field.z(m, n) + 2 * c * s * field.xz(m, n);
+    };
+    const int di = int(std::lround(field.radius * c / grid.spacingX)),
+              dj = int(std::lround(field.radius * s / grid.spacingZ));
+    if (i - std::abs(di) < 0 || i + std::abs(di) > grid.cellsX || j - std::abs(dj) < 0 ||
+        j + std::abs(dj) > grid.cellsZ)
+        return 0;
+    for (const int side : {-1, 1})
+        if (!isOnSheet(patch, std::size_t(i + side * di) * std::size_t(grid.nodesZ()) + std::size_t(j + side * dj)))
+            return 0;
+    const double here = along(i, j), before = along(i - di, j - dj), behind = along(i + di, j + dj);
+    if (std::abs(here) < kSome * std::max(std::abs(before), std::abs(behind))) return 0;
+    return kPerChange * (2 * here - before - behind) / here;
+}
+
 double facetWidth(const SurfaceMesh& mesh, const glm::dvec3& place, double reach)
 {
     constexpr double kLeast = 0.99985,
@@ -111,12 +177,16 @@ std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& 
     }
     if (!patch.curvature) return said;
     const auto [larger, smaller] = patch.principal;
-    const double radius          = patch.curvature->radius;
-    if (const double bias = fitBias(radius, larger, smaller); bias > kMostFitBias)
-        said.push_back(onSparse(patch.spacing, larger, bias));
-    if (object.mesh().faces.empty()) return said;
-    constexpr double kBeside = 2; // radii: in the middle of a facet its neighbours are farther than one [1]
-    if (const double facet = facetWidth(object.mesh(), patch.contact.point, kBeside * radius); facet > radius)
+    const double     radius      = patch.curvature->radius;
+    constexpr double kBeside     = 2; // radii: in the middle of a facet its neighbours are farther than one [1]
+    const double     facet       = facetWidth(object.mesh(), patch.contact.point, kBeside * radius);
+    const bool       faceted     = facet > radius; // from facet to edge, it is these that change
+    const double     bias        = fitBias(radius, larger, smaller) - (faceted ? 0 : changeBias(patch));
+    if (bias > kMostFitBias) said.push_back(onSparse(patch.spacing, larger, bias));
+    if (bias < -kMostFitBias) said.push_back(onChanging(radius, -bias));
+    if (settings.windowOf != WindowOf::object && settings.foundation == 0 && smaller / larger > kOneWay)
+        if (const double width = openWidth(object); width > 0) said.push_back(openObject(width));
+    if (faceted)
         said.push_back(
             "the facets of the mesh are " + formatQuantity(facet, "m") + " wide and its curvature is fitted within " +
             formatQuantity(radius, "m") +

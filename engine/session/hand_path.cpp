@@ -241,6 +241,18 @@ bool isHeader(const std::array<std::string_view, 4>& words, const std::string& w
                 inQuotes(words[0]));
 }
 
+/// \throws Error if a header's names say another order of x, y and z; names of any other kind are the file's own
+void demandOrder(const std::array<std::string_view, 4>& words, const std::string& where)
+{
+    constexpr std::string_view kAxes = "xyz";
+    for (std::size_t k = 1; k < words.size(); ++k) {
+        const std::string_view name = columnHead(words[k]).name;
+        if (!name.empty() && kAxes.find(name.back()) != std::string_view::npos && name.back() != kAxes[k - 1])
+            throw Error(where + ": expected the columns time, x, y, z in this order, found " + inQuotes(words[k]) +
+                        " in the place of " + kAxes[k - 1] + "; reorder the columns");
+    }
+}
+
 HandPath handOf(const NodeField& rows, const std::string& name)
 {
     if (rows.nodesZ() < 4)
@@ -396,7 +408,9 @@ HandPath parseHand(std::istream& in, const std::string& name)
             continue;
         }
         if (checked.waypoints.empty() && isHeader(words.first, where)) {
-            take(withUnitsAtNames(rest), where);
+            const std::string header = withUnitsAtNames(rest);
+            demandOrder(wordsOf(header).first, where);
+            take(header, where);
             continue;
         }
         if (checked.waypoints.empty() && !comment.empty() && wordsOf(comment).count == words.count)

@@ -190,11 +190,9 @@ void writeDescription(const std::filesystem::path& folder, const nlohmann::order
     });
 }
 
-/// Makes a folder for a session.
-/// \throws Error if it is there and not empty
-void makeFresh(const std::filesystem::path& folder)
+/// \throws Error if a folder is not empty
+void expectEmpty(const std::filesystem::path& folder)
 {
-    makeFolder(folder);
     std::error_code failure;
     if (!std::filesystem::is_empty(folder, failure) && !failure)
         throw Error(folder.string() + ": expected a new or empty folder for a session, found one with files, which " +
@@ -363,7 +361,10 @@ struct Recording::Impl {
 
 Recording::Recording(const std::filesystem::path& folder, const SessionInfo& info, Complain complain)
 {
-    makeFresh(folder);
+    makeFolder(folder);
+    // Two sessions that begin in one folder at once would both find it empty, and the later one would clear it away.
+    const FolderLock alone(folder, "another program begins a session in this folder; name another");
+    expectEmpty(folder);
     try {
         impl_ = std::make_unique<Impl>(folder, info, std::move(complain));
     } catch (...) { // the folder was empty: it holds an incomplete beginning

@@ -52,10 +52,15 @@ const PatchSettings kShell{.window = 24e-3,
                            .theory = Theory::shell,
                            .edges  = {Edge::supported, Edge::supported, Edge::supported, Edge::supported}};
 
-Patch touched(const SoftObject& object, const glm::dvec3& from = {0, 0, 1})
+Patch touchedAt(const SoftObject& object, const glm::dvec3& place, const glm::dvec3& from)
 {
     PlateSolver host("host");
-    return deform(object, touchAt(object, kRadius * from, from, 10e-3), kShell, host);
+    return deform(object, touchAt(object, place, from, 10e-3), kShell, host);
+}
+
+Patch touched(const SoftObject& object, const glm::dvec3& from = {0, 0, 1})
+{
+    return touchedAt(object, kRadius * from, from);
 }
 
 /// A cylinder of flat facets, or a box on whose top is a square of two triangles.
@@ -111,6 +116,68 @@ TEST(CurvatureDoubt, SparsePointsAreSaidAndThoseThatAreAskedForAreDenseEnough)
         EXPECT_EQ(sparseForCurvature(dense), "");
         EXPECT_NE(sparseForCurvature(sparse).find("points"), std::string::npos);
     }
+}
+
+/// Ribs of a sheet: a fit that is wide beside a wave reads its crest too weak, and not too strong as on a sphere.
+TEST(CurvatureDoubt, WavesThatAreShortForTheFitsAreSaidToBeReadTooWeak)
+{
+    struct Waves {
+        double height, length, spacing; ///< [m]
+    };
+    for (const auto& [height, length, spacing] :
+         {Waves{1.5e-3, 16e-3, 1e-3}, Waves{1e-3, 24e-3, 1e-3}, Waves{1e-3, 24e-3, 0.6e-3}, Waves{1e-3, 60e-3, 1e-3}}) {
+        const double            q = 2 * std::numbers::pi / length;
+        std::vector<glm::dvec3> points;
+        for (double x = -30e-3; x <= 30e-3; x += spacing)
+            for (double y = -30e-3; y <= 30e-3; y += spacing) points.emplace_back(x, y, height * std::cos(q * y));
+        const SoftObject object = bodyOf(std::move(points));
+        const Patch      patch  = touchedAt(object, {0, 0, height}, {0, 0, 1});
+        const double     crest = height * q * q, missing = 1 - patch.principal.first / crest;
+        std::printf("  waves of %2.0f mm, points %.1f mm apart: %4.1f %% too weak, said %4.1f %%\n", 1e3 * length,
+                    1e3 * spacing, 100 * missing, 100 * changeBias(patch));
+        EXPECT_NEAR(changeBias(patch), missing, 0.03 + 0.35 * missing) << "what is said is some share";
+        const auto said = curvatureDoubts(object, patch, kShell);
+        bool       weak = false;
+        for (const std::string& line : said) {
+            weak = weak || line.find("too weak, expected at most 5") != std::string::npos;
+            EXPECT_EQ(line.find("too strong"), std::string::npos) << line;
+        }
+        EXPECT_EQ(weak, changeBias(patch) - fitBias(patch.curvature->radius, patch.principal.first, 0) > kMostFitBias);
+        if (missing > 0.12) {
+            EXPECT_TRUE(weak) << length;
+        }
+        if (missing < 0.02) {
+            EXPECT_FALSE(weak) << length;
+        }
+    }
+}
+
+/// A window about the contact does not know that the object ends, and where.
+TEST(CurvatureDoubt, AnOpenBowlIsSaidToBeOpenAndABallOrATubeIsNot)
+{
+    const SoftObject        ball = body(Shape::sphere, 4000);
+    std::vector<glm::dvec3> half, most;
+    for (const glm::dvec3& place : ball.positions()) {
+        if (place.z > 0) half.push_back(place);
+        if (place.z > -0.98 * kRadius) most.push_back(place);
+    }
+    const SoftObject bowl = bodyOf(std::move(half)), pierced = bodyOf(std::move(most));
+    const auto       isOpen = [](const SoftObject& object, const PatchSettings& settings) {
+        for (const std::string& line : curvatureDoubts(object, touched(object), settings))
+            if (line.find("the object is open, with a border 39") != std::string::npos ||
+                line.find("the object is open, with a border 40") != std::string::npos)
+                return true;
+        return false;
+    };
+    EXPECT_TRUE(isOpen(bowl, kShell));
+    EXPECT_FALSE(isOpen(ball, kShell));
+    EXPECT_FALSE(isOpen(pierced, kShell)) << "a hole of 8 mm";
+    PatchSettings whole = kShell;
+    whole.windowOf      = WindowOf::object;
+    EXPECT_FALSE(isOpen(bowl, whole)) << "such a window sees its border";
+    PatchSettings bedded = kShell;
+    bedded.foundation    = 1e6;
+    EXPECT_FALSE(isOpen(bowl, bedded)) << "what lies below ends the dent";
 }
 
 TEST(CurvatureDoubt, FacetsWiderThanTheFitsAreSaid)

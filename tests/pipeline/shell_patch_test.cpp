@@ -406,10 +406,12 @@ TEST(ShellPatch, APlateThatIsCurvedIsNoSilentOne)
 TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
 {
     const Patch dome = touchOf(ellipsoid(glm::dvec3(50e-3), 0), {0, 0, 50e-3});
-    const auto  says = [&](const char* words, const auto& change) {
+    const auto  says = [&](const char* words, const auto& change, WindowOf of = kShell.windowOf) {
         Patch patch = dome;
         change(patch);
-        return warned(patch, kShell, words);
+        PatchSettings settings = kShell;
+        settings.windowOf      = of;
+        return warned(patch, settings, words);
     };
     const auto lengths = [](double count) { return [=](Patch& p) { p.shellLength = kShell.window / count; }; };
     const auto curved  = [](double most, double least) { return [=](Patch& p) { p.principal = {most, least}; }; };
@@ -439,6 +441,10 @@ TEST(ShellPatch, WarnsFromItsBoundsOnAndNotBefore)
     EXPECT_FALSE(says("too deep", sagging(0.404, 100))) << "and 40 of what bulges both ways";
     EXPECT_TRUE(says("it sags 40.6 % of the patch window's width, expected at most 40", sagging(0.406, 100)));
     EXPECT_TRUE(says("felt within some 10 %", sagging(0.5, 11)));
+    EXPECT_FALSE(says("nearly level", sagging(0.104, 80), WindowOf::object));
+    EXPECT_TRUE(says("up to a sixth too soft", sagging(0.15, 80), WindowOf::object));
+    EXPECT_TRUE(says("several times too soft", sagging(0.21, 80), WindowOf::object)) << "a bowl on a stem";
+    EXPECT_TRUE(says("up to a sixth too soft", sagging(0.45, 0), WindowOf::object)) << "a trough";
     const auto unlike = [&](Patch& p) { // 19 lengths are asked for
         curved(20, 4)(p);
         lengths(12)(p);

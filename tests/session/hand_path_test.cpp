@@ -169,6 +169,8 @@ TEST(HandPath, WhatNoHandCanDoIsRefusedWithItsLine)
     EXPECT_TRUE(holds(refusal(good + "1,0,zero,0\n"), {"line 3", "column 3", "zero"}));
     EXPECT_TRUE(holds(refusal(good + "1,0,0,0\nend\n"), {"line 4"}));
     EXPECT_TRUE(holds(refusal("x,y,z,time\n0,0,0,0\n"), {"line 1", "\"x\"", "time, x, y, z"}));
+    EXPECT_TRUE(holds(refusal("time,z,y,x\n0,0,0,0\n"), {"line 1", "time, x, y, z", "\"z\" in the place of x"}));
+    EXPECT_TRUE(holds(refusal("t,hip_x [mm],hip_z [mm],hip_y\n0,0,0,0\n"), {"line 1", "in the place of y"}));
     EXPECT_TRUE(holds(refusal(good + "0.001,5,0,0\n"), {"line 3", "5000 m/s", "metres"}));
     EXPECT_TRUE(holds(refusal(good + "1,0,\x1b[2J,0\n"), {"found \"?[2J\""})) << "no commands for a terminal";
     EXPECT_TRUE(holds(refusal(good), {"hand.csv", "two waypoints", "found 1"}));

@@ -27,6 +27,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "engine/core/file.h"
 #include "engine/session/recorded_session.h"
 #include "engine/session/session_table.h"
 #include "tests/session/sessions.h"
@@ -265,6 +266,37 @@ TEST(Recording, NoSessionIsOverwritten)
     EXPECT_TRUE(holds(refusalOf([&] { const Recording r(folder / "file" / "run", someInfo()); }), {"cannot be made"}));
     std::filesystem::create_directory(folder / "empty");
     EXPECT_NO_THROW(static_cast<void>(recorded(folder / "empty", 5))) << "an empty folder is nobody's";
+}
+
+/// The one that comes too late must not clear away the files of the other.
+TEST(Recording, OfTwoThatBeginInOneFolderAtOnceOneIsRefusedAndTheOtherIsWhole)
+{
+    const TemporaryFolder folder;
+    for (int run = 0; run < 50; ++run) {
+        const auto       place = folder / std::to_string(run);
+        std::atomic<int> ready{0}, refused{0}, whole{0};
+        const auto       record = [&] {
+            ++ready;
+            while (ready < 2) std::this_thread::yield();
+            try {
+                Recording recording(place, someInfo());
+                for (int n = 0; n < 3; ++n) recording.pushWaiting(recordNumber(n));
+                const RecordingReport report = recording.finish();
+                whole += report.ticks == 3 && !report.stopped;
+            } catch (const Error&) {
+                ++refused;
+            }
+        };
+        std::thread other(record);
+        record();
+        other.join();
+        ASSERT_EQ(refused, 1) << run;
+        ASSERT_EQ(whole, 1) << run;
+        ASSERT_EQ(readSession(place).records.size(), 3U);
+    }
+    const FolderLock begins((std::filesystem::create_directory(folder / "other"), folder / "other"), "taken");
+    const auto       sentence = refusalOf([&] { const Recording late(folder / "other", someInfo()); });
+    EXPECT_TRUE(holds(sentence, {"other", "another program begins a session"})) << sentence;
 }
 
 TEST(Recording, IsNotMadeThroughALinkThatAnotherUserPutIntoAFolderOfAnybody)

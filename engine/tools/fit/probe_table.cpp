@@ -229,6 +229,7 @@ bool holdsProbes(const std::filesystem::path& file)
     std::string line;
     for (int n = 0; n < 100 && std::getline(stream, line); ++n) {
         if (line.size() > 4096) return false; // no line of a header
+        if (line.ends_with('\r')) line.pop_back();
         const std::string_view said = n == 0 ? withoutMark(line) : std::string_view(line);
         if (!isSaid(said)) continue;
         bool depth = false, force = false;

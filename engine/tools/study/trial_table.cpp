@@ -189,8 +189,9 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
 {
     const std::string head = header();
     if (!text.starts_with(head))
-        throw Error(file.string() + ": line 1: expected the columns " + head.substr(0, head.size() - 1) +
-                    ", found others");
+        throw Error(file.string() + ": line 1: expected the columns " + head.substr(0, head.size() - 1) + ", found " +
+                    inQuotes(std::string_view(text).substr(0, text.find('\n'))) +
+                    "; was the table changed by another program?");
     std::vector<TrialRow> rows;
     constexpr std::size_t kShortest = 38; // [bytes] of a row, but for the first ones
     rows.reserve(std::min({std::size_t(std::ranges::count(text, '\n')), text.size() / kShortest, kMostTrials}));
@@ -210,7 +211,11 @@ std::vector<TrialRow> rowsOf(const std::string& text, const std::filesystem::pat
 
 std::vector<TrialRow> readTrials(const std::filesystem::path& file)
 {
-    return rowsOf(asToday(wholeLines(file)), file);
+    std::string text = wholeLines(file);
+    // Spreadsheets write a mark before a table, and more at the ends of its lines.
+    if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
+    std::erase(text, '\r'); // no cell has the end of a line
+    return rowsOf(asToday(std::move(text)), file);
 }
 
 TrialTable::TrialTable(std::filesystem::path file) : file_(std::move(file))

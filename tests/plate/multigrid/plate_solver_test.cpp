@@ -1,8 +1,8 @@
 #include "engine/plate/plate_solver.h"
 
 #include <array>
-#include <cmath>
 #include <chrono>
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 #include "engine/core/contract.h"
 #include "engine/plate/load.h"
 #include "engine/plate/multigrid/detail/worst.h"
+#include "engine/plate/multigrid/multigrid_plate_solver.h"
 #include "engine/plate/reference/reference_plate_solver.h"
 #include "tests/support/errors.h"
 #include "tests/support/shader_fixture.h"

@@ -160,6 +160,7 @@ TEST(ProbeTable, IsKnownByItsHeader)
         return holdsProbes(folder.path() / "a.csv");
     };
     EXPECT_TRUE(holds("# a comment\n\nprobe,\"depth [mm]\",force(N)\n"));
+    EXPECT_TRUE(holds("depth [mm],force\r\n0,0\r\n"));
     EXPECT_FALSE(holds("x,y,z,felt_stiffness\n1,2,3,4\n"));
     EXPECT_FALSE(holds(""));
 }

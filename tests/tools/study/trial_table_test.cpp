@@ -64,6 +64,20 @@ TEST(TrialTable, GivesBackWhatWasAppendedAlsoCommasQuotesAndEmptyCells)
     for (std::uint64_t n = 1; n <= 3; ++n) demandSame(again.rows()[n - 1], rowNumber(n));
 }
 
+TEST(TrialTable, ThatASpreadsheetHasSavedIsRead)
+{
+    const TemporaryFolder folder;
+    {
+        TrialTable table(folder / "trials.csv");
+        for (std::uint64_t n = 1; n <= 2; ++n) table.append(rowNumber(n));
+    }
+    std::string saved = "\xEF\xBB\xBF";
+    for (const char c : contentsOf(folder / "trials.csv")) saved += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    const auto rows = readTrials(folder.write("saved.csv", saved));
+    ASSERT_EQ(rows.size(), 2U);
+    for (std::uint64_t n = 1; n <= 2; ++n) demandSame(rows[n - 1], rowNumber(n));
+}
+
 TEST(TrialTable, OfAnEarlierVersionGetsTheColumnThatSaysWhetherTheTrialWasFelt)
 {
     const TemporaryFolder folder;
@@ -212,7 +226,7 @@ TEST(TrialTable, ATornHeaderIsWrittenAnewAndOthersTablesAreRefused)
         TrialTable(other / "t.csv");
         return contentsOf(other / "t.csv");
     }();
-    refused("a,b\n1,2\n", "line 1: expected the columns " + header.substr(0, header.size() - 1) + ", found others");
+    refused("a,b\n1,2\n", "line 1: expected the columns " + header.substr(0, header.size() - 1) + ", found \"a,b\"");
     refused(header + "P01,1\n", "line 2: expected 18 columns, found 2");
     refused(header + "P01,one,1,,,,,,,,1,1,,,1,1,,\n", "column trial");
     refused(header + "P01,1,1,,,,,,,maybe,1,1,,,1,1,,\n", "column correct");
