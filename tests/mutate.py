@@ -117,6 +117,9 @@ def report(results, wanted):
         source, operator, line, mutated, count = key
         if key in known and verdict == "survived" and (source, shown(line, mutated)) not in harmless:
             print(f"survived: {source}, {operator}, occurrence {count}\n    {line}\n    {mutated}")
+    possible = {(source, shown(line, mutated)) for source, _, line, mutated, _ in known}
+    for source, line in sorted(harmless - possible):
+        print(f"tests/mutation/explained.txt: this is no mutant of {source} any more\n    {line}")
 
 
 def main():
