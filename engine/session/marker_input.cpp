@@ -5,6 +5,7 @@
 #include <thread>
 #include <utility>
 
+#include <linux/sock_diag.h>
 #include <poll.h>
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -15,10 +16,38 @@
 #include "engine/session/detail/quiet_thread.h"
 
 namespace palp {
+namespace {
+
+/// Asks for room for some 2500 short datagrams, which come while the thread that reads is kept from running; the usual
+/// room is for 250. Where the system grants less, more are dropped, and counted.
+void askForRoom(int socket) noexcept
+{
+    constexpr int kRoom = 1 << 20; // [bytes] Linux grants twice as much, and takes some 800 for a short datagram
+    static_cast<void>(::setsockopt(socket, SOL_SOCKET, SO_RCVBUF, &kRoom, sizeof kRoom));
+}
+
+/// Returns how many datagrams of a socket the system has dropped so far, modulo 2^32. We ask for it, because the count
+/// that comes with each datagram (SO_RXQ_OVFL) says nothing of those that were dropped after the last one.
+/// \return 0 if the system does not say
+std::uint32_t droppedOf(int socket) noexcept
+{
+#ifdef SO_MEMINFO
+    std::array<std::uint32_t, SK_MEMINFO_VARS> counts{};
+    socklen_t                                  size = sizeof counts;
+    if (::getsockopt(socket, SOL_SOCKET, SO_MEMINFO, counts.data(), &size) == 0) return counts[SK_MEMINFO_DROPS];
+#endif
+    static_cast<void>(socket);
+    return 0;
+}
+
+} // namespace
+
 struct MarkerInput::Impl {
     explicit Impl(const MarkerSources& sources) : wantsKeys(sources.keys), onKey(sources.onKey)
     {
-        if (sources.address) socket.emplace(*sources.address, UdpEnd::here, "--markers");
+        if (!sources.address) return;
+        socket.emplace(*sources.address, UdpEnd::here, "--markers");
+        askForRoom(socket->handle());
     }
 
     ~Impl()
@@ -32,9 +61,10 @@ struct MarkerInput::Impl {
         if (wake >= 0) ::close(wake);
     }
 
-    void listen(Hear to)
+    void listen(Hear to, Lose ofLost)
     {
         hear = std::move(to);
+        lose = std::move(ofLost);
         wake = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
         if (wake < 0) throw Error("--markers: the system has no handle left");
         terminal.emplace(wantsKeys);
@@ -52,20 +82,35 @@ struct MarkerInput::Impl {
                                        {terminal->isOpen() ? STDIN_FILENO : -1, POLLIN, 0}}};
         for (;;) {
             if (::poll(from.data(), from.size(), -1) < 0) continue; // interrupted
-            if (from[0].revents != 0) return;
-            if (from[1].revents != 0) readDatagrams();
+            if (from[0].revents != 0) return readLast();
+            if (from[1].revents != 0) static_cast<void>(readDatagrams());
             if (from[2].revents != 0 && !readKeys()) from[2].fd = -1;
         }
     }
 
-    void readDatagrams()
+    /// Returns false if all have been read.
+    bool readDatagrams()
     {
         constexpr int          kAtOnce = 256; // then the end is looked at again: a flood cannot hold it up
         std::array<char, 1024> text;          // what is longer is cut by the system
-        for (int n = 0; n < kAtOnce; ++n) {
+        bool                   more = true;
+        for (int n = 0; more && n < kAtOnce; ++n) {
             const ssize_t size = ::recv(socket->handle(), text.data(), text.size(), MSG_DONTWAIT);
-            if (size < 0) return;
-            hear({text.data(), std::size_t(size)});
+            more               = size >= 0;
+            if (more) hear({text.data(), std::size_t(size)});
+        }
+        const std::uint32_t now = droppedOf(socket->handle());
+        if (const std::uint32_t since = now - dropped; since > 0 && lose) lose(since);
+        dropped = now;
+        return more;
+    }
+
+    /// Reads what waits at the end, at most so much that a flood cannot hold it up.
+    void readLast()
+    {
+        constexpr int kMost = 64;
+        if (!socket) return;
+        for (int n = 0; n < kMost && readDatagrams(); ++n) {
         }
     }
 
@@ -91,9 +136,11 @@ struct MarkerInput::Impl {
     bool                           wantsKeys;
     decltype(MarkerSources::onKey) onKey;
     Hear                           hear;
+    Lose                           lose;
     std::optional<KeyTerminal>     terminal;
     std::optional<UdpSocket>       socket;
-    int                            wake = -1;
+    std::uint32_t                  dropped = 0; ///< as droppedOf() said last
+    int                            wake    = -1;
     std::thread                    thread;
 };
 
@@ -101,9 +148,9 @@ MarkerInput::MarkerInput(const MarkerSources& sources) : impl_(std::make_unique<
 
 MarkerInput::~MarkerInput() = default;
 
-void MarkerInput::listen(Hear hear)
+void MarkerInput::listen(Hear hear, Lose lose)
 {
-    impl_->listen(std::move(hear));
+    impl_->listen(std::move(hear), std::move(lose));
 }
 
 std::uint16_t MarkerInput::port() const noexcept

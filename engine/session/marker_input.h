@@ -28,19 +28,23 @@ struct MarkerSources {
 class MarkerInput {
 public:
     using Hear = std::function<void(std::string_view text)>;
+    using Lose = std::function<void(std::uint64_t markers)>;
 
     /// Opens the address.
     /// \throws Error naming --markers if it cannot be used
     explicit MarkerInput(const MarkerSources& sources);
-    ~MarkerInput();
+    ~MarkerInput(); ///< hears first what has arrived until then
     MarkerInput(const MarkerInput&)            = delete;
     MarkerInput& operator=(const MarkerInput&) = delete;
 
     /// Begins to listen; what came before is a marker of this moment.
     /// \param hear  is called on the thread of this, with any bytes that somebody sent: SessionTap::mark()
+    /// \param lose  is called on that thread with the number of datagrams that the system has dropped since the last
+    ///              call, because they came faster than they could be kept: SessionTap::lose(). May be empty; is not
+    ///              called where the system does not count them (Linux before 4.12)
     /// \pre it does not listen yet
     /// \throws Error if the system has no handle left
-    void listen(Hear hear);
+    void listen(Hear hear, Lose lose = {});
 
     [[nodiscard]] std::uint16_t port() const noexcept; ///< at which it listens; 0: at none
     [[nodiscard]] bool          hearsKeys() const noexcept;

@@ -304,7 +304,7 @@ struct Recording::Impl {
                 stop(folder.string() + ": another program has removed, moved or cut the files of the recording");
             close();
             const std::uint64_t rows = whole ? files.rows() : 0, marked = whole ? files.marked() : 0;
-            report = {rows, pushed - rows, longestGap, why, marked, marksHeard - marked};
+            report = {rows, pushed - rows, longestGap, why, marked, marksHeard - marked + marksMissed};
             if (there) describeEnd(); // else another recording may have the folder's name
             if (!report.stopped && report.lost > 0)
                 say(folder.string() + ": " + counted(report.lost, "tick") +
@@ -348,9 +348,9 @@ struct Recording::Impl {
     SessionClocks              clocks;     ///< by the producer, before `begun`
     std::atomic<bool>          begun{false};
     bool                       noted = false; ///< of the writer: session.json has the clocks
-    std::mutex                 mutex;         ///< of the next two; the producer never takes it
+    std::mutex                 mutex;         ///< of the next three; the producer never takes it
     std::vector<Marker>        markers;
-    std::uint64_t              marksHeard = 0;
+    std::uint64_t              marksHeard = 0, marksMissed = 0;
     std::atomic<bool>          finishing{false};
     std::atomic<bool>          stopped{false};
     double                     longestGap = 0; ///< [s] of the writer
@@ -403,6 +403,12 @@ void Recording::mark(const Marker& marker)
     const std::lock_guard lock(impl_->mutex);
     if (impl_->marksHeard++ < kMostMarkers && impl_->markers.size() < kMostMarkersAtOnce)
         impl_->markers.push_back(marker);
+}
+
+void Recording::lose(std::uint64_t markers)
+{
+    const std::lock_guard lock(impl_->mutex);
+    impl_->marksMissed += markers;
 }
 
 RecordingReport Recording::finish()

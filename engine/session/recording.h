@@ -45,7 +45,7 @@ struct RecordingReport {
     double        longestGap = 0;         ///< [s] between two visits of the writer: what a kill would have cost at most
     std::optional<std::string> stopped{}; ///< why writing stopped early: a sentence
     std::uint64_t              markers     = 0; ///< on disk
-    std::uint64_t              markersLost = 0; ///< came too fast, were too many, or writing had stopped
+    std::uint64_t              markersLost = 0; ///< came too fast, were too many, or writing had stopped; and lose()
 };
 
 /// Writes a session while it runs: a folder with session.json, ticks.npy with a row for each tick, and markers.jsonl
@@ -61,7 +61,7 @@ struct RecordingReport {
 /// When a file cannot be written (a full disk, a limit on sizes) the rows end at a whole record, one sentence gives the
 /// reason, and pushing goes on without effect: the touch does not depend on the disk.
 /// \thread  begin(), push(), pushWaiting(): one thread; wait-free but for the last, no allocation, lock or throw;
-///          mark(): any other; all else: the thread that made it
+///          mark(), lose(): any other; all else: the thread that made it
 class Recording {
 public:
     using Complain = std::function<void(const std::string&)>;
@@ -90,6 +90,8 @@ public:
 
     /// Takes a marker whose text markerText() made; if there are too many it is counted as lost.
     void mark(const Marker& marker);
+    /// Counts markers as lost that were sent and did not reach this.
+    void lose(std::uint64_t markers);
 
     /// Writes what is left, marks session.json as finished, and ends the writer. Later calls return the same.
     RecordingReport finish();

@@ -48,4 +48,10 @@ void SessionTap::mark(std::string_view text)
     ++marked_;
 }
 
+void SessionTap::lose(std::uint64_t markers)
+{
+    if (recording_) recording_->lose(markers);
+    for (TickStream* const stream : streams_) stream->lose(markers);
+}
+
 } // namespace palp

@@ -13,7 +13,8 @@
 namespace palp {
 
 /// All that leaves a session while it runs: a recording, streams, and the markers that both get.
-/// \thread  begin(), push(), pushWaiting(): the session's one thread, and as those of Recording; mark(): any other
+/// \thread  begin(), push(), pushWaiting(): the session's one thread, and as those of Recording; mark(), lose(): any
+///          other
 class SessionTap {
 public:
     /// \param recording  may be null; it and the streams outlive this
@@ -28,6 +29,9 @@ public:
     /// Marks the newest tick with a text from anywhere, which markerText() makes harmless. Before time 0 has come, the
     /// marker is of time 0, and is streamed with the clocks of its own moment.
     void mark(std::string_view text);
+    /// Counts markers as lost that were sent and did not come: a recording's report and a gap in a stream's numbers
+    /// tell of them.
+    void lose(std::uint64_t markers);
 
     [[nodiscard]] std::uint64_t marked() const noexcept { return marked_; } ///< markers so far
 

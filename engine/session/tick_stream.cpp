@@ -57,13 +57,20 @@ void TickStream::mark(const Marker& marker, const SessionClocks& clocks)
     if (markers_.size() < kMostMarkers) markers_.push_back({marker, clocks, markersSeen_});
 }
 
+void TickStream::lose(std::uint64_t markers)
+{
+    const std::lock_guard lock(mutex_);
+    markersSeen_ += markers; // likewise
+}
+
 StreamReport TickStream::finish()
 {
     if (thread_.joinable()) {
         finishing_.store(true, std::memory_order_release);
         thread_.join();
     }
-    return {outlet_->name(), sent_, pushed_ - sent_, markersSent_};
+    const std::lock_guard lock(mutex_);
+    return {outlet_->name(), sent_, pushed_ - sent_, markersSent_, markersSeen_ - markersSent_};
 }
 
 void TickStream::work()

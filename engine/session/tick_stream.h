@@ -50,10 +50,11 @@ public:
 
 /// What became of a stream.
 struct StreamReport {
-    std::string   to;          ///< TickOutlet::name()
-    std::uint64_t sent    = 0; ///< ticks
-    std::uint64_t dropped = 0; ///< ticks for which the ring, the socket or the receiver had no room
-    std::uint64_t markers = 0; ///< sent
+    std::string   to;              ///< TickOutlet::name()
+    std::uint64_t sent        = 0; ///< ticks
+    std::uint64_t dropped     = 0; ///< ticks for which the ring, the socket or the receiver had no room
+    std::uint64_t markers     = 0; ///< sent
+    std::uint64_t markersLost = 0; ///< found no room, or did not reach the stream
 };
 
 /// Sends the ticks of sessions to another program while they run, about a millisecond later.
@@ -62,7 +63,7 @@ struct StreamReport {
 ///
 /// What finds no room is dropped and counted: neither the servo nor a recording waits for a network.
 /// \thread  begin(), push(), pushWaiting(): one thread; wait-free but for the last, no allocation, lock or throw;
-///          mark(): any other; all else: the thread that made it
+///          mark(), lose(): any other; all else: the thread that made it
 class TickStream {
 public:
     explicit TickStream(std::unique_ptr<TickOutlet> outlet);
@@ -77,6 +78,8 @@ public:
     void pushWaiting(const TickRecord& record) noexcept;
     /// \param clocks  of time 0 of the marker's session
     void mark(const Marker& marker, const SessionClocks& clocks);
+    /// Counts markers as dropped that did not reach this.
+    void lose(std::uint64_t markers);
 
     /// Sends what is left and ends the thread. Later calls return the same.
     StreamReport finish();

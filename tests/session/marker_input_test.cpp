@@ -114,6 +114,35 @@ TEST(MarkerInput, WhatComesByAnotherAddressIsHeardOnlyWhereTheUserNamesOne)
     }
 }
 
+/// Nobody reads while they come, so that the system has to drop the last ones, which no datagram follows.
+TEST(MarkerInput, WhatTheSystemDropsIsCountedAsLost)
+{
+    for (const std::string host : {"127.0.0.1", "::1"}) {
+        Heard                      heard;
+        std::atomic<std::uint64_t> lost  = 0;
+        constexpr std::size_t      kSent = 8000; // of 1000 bytes: more than the room that is asked for
+        const std::string          text(1000, 'x');
+        std::optional<MarkerInput> input;
+        try {
+            input.emplace(MarkerSources{.address = UdpAddress{host, 0}});
+        } catch (const Error&) { // a machine without IPv6
+            ASSERT_EQ(host, "::1");
+            continue;
+        }
+        const UdpSocket from({host, input->port()}, UdpEnd::there, "a test");
+        for (std::size_t n = 0; n < kSent; ++n) {
+            ASSERT_EQ(::send(from.handle(), text.data(), text.size(), 0), ssize_t(text.size()));
+            if (n % 200 == 0) std::this_thread::sleep_for(1ms); // what is on its way comes to the socket
+        }
+        input->listen([&](std::string_view marker) { heard.add(marker); },
+                      [&](std::uint64_t markers) { lost += markers; });
+        input.reset(); // which hears what has arrived
+        EXPECT_GT(heard.texts.size(), 20u) << host;
+        EXPECT_GT(lost, 1000u) << host;
+        EXPECT_EQ(heard.texts.size() + lost, kSent) << host;
+    }
+}
+
 TEST(MarkerInput, ItEndsAtOnceWhetherOrNotItListened)
 {
     const auto began = std::chrono::steady_clock::now();

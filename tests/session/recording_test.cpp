@@ -251,6 +251,21 @@ TEST(Recording, AFloodOfMarkersIsCutAndCounted)
     EXPECT_EQ(readSession(folder / "run").markers.size(), report.markers);
 }
 
+TEST(Recording, MarkersThatDidNotReachItAreAmongThoseThatItLacks)
+{
+    const TemporaryFolder folder;
+    Recording             recording(folder / "run", someInfo());
+
+    recording.lose(7);
+    recording.mark({0, "x"});
+    recording.lose(2);
+    const RecordingReport report = recording.finish();
+
+    EXPECT_EQ(report.markers, 1u);
+    EXPECT_EQ(report.markersLost, 9u);
+    EXPECT_EQ(readDescription(folder / "run").whyIncomplete, "it lacks 9 markers");
+}
+
 TEST(Recording, NoSessionIsOverwritten)
 {
     const TemporaryFolder folder;

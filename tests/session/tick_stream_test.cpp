@@ -168,6 +168,7 @@ TEST(TickStream, MarkersThatAreDroppedLeaveAGapInTheirNumbers)
 
     EXPECT_LT(report.markers, std::uint64_t(kMany));
     EXPECT_EQ(slow.lastMarker, std::uint64_t(kMany + 1));
+    EXPECT_EQ(report.markers + report.markersLost, std::uint64_t(kMany + 1));
 }
 
 TEST(UdpStream, WhatNobodyListensToIsDropped)
@@ -228,6 +229,25 @@ TEST(SessionTap, MarkersGetTheTimeOfTheNewestTickEverywhere)
     EXPECT_EQ(session.markers[0].time, recordNumber(7).time);
     EXPECT_EQ(session.markers[0].text, "one");
     EXPECT_EQ(session.clocks->realtime, at<std::int64_t>(marker, 16)) << "one clock for both";
+}
+
+TEST(SessionTap, MarkersThatDidNotComeAreLostEverywhere)
+{
+    const TemporaryFolder folder;
+    const Receiver        receiver;
+    TickStream            stream(openOutlet(receiver.address()));
+    Recording             recording(folder / "run", someInfo());
+    SessionTap            tap(&recording, {&stream});
+
+    tap.begin(std::chrono::steady_clock::now());
+    tap.lose(4);
+    tap.mark("one");
+    const std::string marker = receiver.next();
+
+    ASSERT_GE(marker.size(), 40u);
+    EXPECT_EQ(at<std::uint64_t>(marker, 8), 5u) << "a gap in the numbers";
+    EXPECT_EQ(recording.finish().markersLost, 4u);
+    EXPECT_EQ(stream.finish().markersLost, 4u);
 }
 
 TEST(SessionTap, AMarkerBeforeTheFirstTickHasTheClocksOfItsMoment)

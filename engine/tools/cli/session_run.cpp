@@ -178,6 +178,14 @@ SessionSummary playVirtual(const SessionParts& parts, double seconds, const OnTi
         stop);
 }
 
+std::string sentenceOf(const StreamReport& stream)
+{
+    std::string sentence =
+        counted(stream.sent, "tick") + " sent to " + stream.to + ", " + std::to_string(stream.dropped) + " dropped";
+    if (stream.markersLost > 0) sentence += "; " + counted(stream.markersLost, "marker") + " lost";
+    return sentence;
+}
+
 nlohmann::json jsonOf(const SessionRun& run)
 {
     nlohmann::json all = jsonOf(run.summary);
@@ -194,8 +202,11 @@ nlohmann::json jsonOf(const SessionRun& run)
                            {"markers", run.recorded->markers},
                            {"markers_lost", run.recorded->markersLost}};
     for (const StreamReport& stream : run.streams)
-        all["streams"].push_back(
-            {{"to", stream.to}, {"sent", stream.sent}, {"dropped", stream.dropped}, {"markers", stream.markers}});
+        all["streams"].push_back({{"to", stream.to},
+                                  {"sent", stream.sent},
+                                  {"dropped", stream.dropped},
+                                  {"markers", stream.markers},
+                                  {"markers_lost", stream.markersLost}});
     return all;
 }
 
@@ -212,9 +223,7 @@ void printText(const SessionRun& run)
                       << (run.recorded->stopped ? " lost: the recording had stopped\n"
                                                 : " lost: they came too fast or were too many\n");
     }
-    for (const StreamReport& stream : run.streams)
-        std::cout << "  " << counted(stream.sent, "tick") << " sent to " << stream.to << ", " << stream.dropped
-                  << " dropped\n";
+    for (const StreamReport& stream : run.streams) std::cout << "  " << sentenceOf(stream) << "\n";
 }
 
 void demandWhole(const SessionRun& run)
@@ -269,7 +278,9 @@ SessionRun runSession(const Scene& scene, const LoadedObject& loaded, const Sess
         tap.pushWaiting(record);
         if (onTick) onTick(record);
     };
-    if (markers) markers->listen([&tap](std::string_view text) { tap.mark(text); });
+    if (markers)
+        markers->listen([&tap](std::string_view text) { tap.mark(text); },
+                        [&tap](std::uint64_t lost) { tap.lose(lost); });
     if (markers && markers->hearsKeys()) sayKeys(o, hasClutch);
     run.summary = clock == SessionClock::real ? playLive(o, hand.seconds, parts, tap, onTick, &isClutched, run)
                                               : playVirtual(parts, hand.seconds, each, &stop);

@@ -97,11 +97,7 @@ void tell(const ViewOptions& o, const WorkbenchReport& report, const SurfaceRend
 /// Says what was sent and what was dropped, beside a report for scripts on standard error.
 void tellStreams(const std::vector<std::unique_ptr<TickStream>>& streams, bool json)
 {
-    for (const auto& stream : streams) {
-        const StreamReport report = stream->finish();
-        (json ? std::cerr : std::cout) << counted(report.sent, "tick") << " sent to " << report.to << ", "
-                                       << report.dropped << " dropped\n";
-    }
+    for (const auto& stream : streams) (json ? std::cerr : std::cout) << sentenceOf(stream->finish()) << "\n";
 }
 
 SessionInfo infoOf(const ViewOptions& o, const Stage& stage, const HapticDevice& device)
@@ -229,7 +225,9 @@ void showIn(GlfwWindow& window, const ViewOptions& o, WorkbenchSettings& setting
     Workbench                  bench(settings, screen);
     std::optional<MarkerInput> markers; // ends before what it marks
     if (!o.markers.empty()) markers.emplace(MarkerSources{.address = markerAddress(o.markers)});
-    if (markers) markers->listen([&bench](std::string_view text) { bench.mark(text); });
+    if (markers)
+        markers->listen([&bench](std::string_view text) { bench.mark(text); },
+                        [&bench](std::uint64_t lost) { bench.loseMarkers(lost); });
     const auto report = bench.run(
         [&](double patience) {
             WindowInput input = window.poll(patience);

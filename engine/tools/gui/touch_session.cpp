@@ -174,6 +174,12 @@ void TouchSession::mark(std::string_view text)
     if (tap_) tap_->mark(text);
 }
 
+void TouchSession::loseMarkers(std::uint64_t markers)
+{
+    const std::lock_guard lock(tapMutex_);
+    if (tap_) tap_->lose(markers);
+}
+
 void TouchSession::followPointer(const WindowInput& input, const std::optional<Hit>& hit, double& depth)
 {
     if (!byPointer() || !pointer_) return;

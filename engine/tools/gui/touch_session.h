@@ -69,7 +69,10 @@ public:
     void mark();
     /// Does the same with a text from anywhere, and says nothing; nothing takes it where nothing is recorded or sent.
     /// \thread any
-    void                                 mark(std::string_view text);
+    void mark(std::string_view text);
+    /// Counts markers as lost that were sent and did not come, in the recording and in the settings' streams.
+    /// \thread any
+    void                                 loseMarkers(std::uint64_t markers);
     [[nodiscard]] const SessionRecorder& recorder() const { return recorder_; }
     void                                 endRecording() { recorder_.end(); }
 

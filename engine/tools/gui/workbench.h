@@ -36,6 +36,9 @@ public:
     /// Marks the newest tick in a recording and in streams with a text from anywhere.
     /// \thread any
     void mark(std::string_view text) { session_.mark(text); }
+    /// Counts markers as lost that were sent and did not come.
+    /// \thread any
+    void loseMarkers(std::uint64_t markers) { session_.loseMarkers(markers); }
 
 private:
     // Between two sessions.
