@@ -282,8 +282,9 @@ std::string today()
 }
 
 /// Stores what was found where every command finds it.
-/// \return the file; empty, with a warning, if it cannot be stored: the numbers are printed all the same
-std::string store(const Found& found)
+/// \param why  gets the reason if it cannot be stored
+/// \return the file; empty, with a sentence, if it cannot be stored: the numbers are printed all the same
+std::string store(const Found& found, std::string& why)
 {
     try {
         return writeFalconConstants({.serial          = found.serial,
@@ -293,7 +294,8 @@ std::string store(const Found& found)
                                      .hold            = found.hold})
             .string();
     } catch (const Error& error) {
-        std::cerr << "palpate: warning: " << error.what() << "\n";
+        why = error.what();
+        std::cerr << "palpate: " << why << "; the calibration was measured, and is not stored\n";
         return {};
     }
 }
@@ -364,11 +366,13 @@ void calibrate(const CalibrateOptions& o)
 {
     const double      mass  = kilograms(o.mass);
     const Found       found = o.emulator ? weighEmulated(o, mass) : weighReal(o, mass);
-    const std::string file  = store(found);
+    std::string       whyNotStored;
+    const std::string file = store(found, whyNotStored);
     if (o.json)
         std::cout << jsonText(jsonOf(o, mass, found, file));
     else
         print(o, found, file);
+    if (file.empty()) throw CheckFailed(whyNotStored); // a script would go on with the old counts
 }
 
 } // namespace
@@ -388,7 +392,8 @@ void addCalibrateCommand(CLI::App& app)
         "mean force is measured, first without and then with the mass. This takes a minute; nothing may touch the\n"
         "grip meanwhile. The result is stored in $XDG_CONFIG_HOME/palpate (~/.config/palpate) by the Falcon's serial\n"
         "number; every command uses it, and carries the arm. That of the emulated Falcon is used by falcon-emulator\n"
-        "alone; remove falcon-EMULATED.json to be rid of it. Exit code 1: the weighing failed.\n"
+        "alone; remove falcon-EMULATED.json to be rid of it. Exit code 1: the weighing failed, or its\n"
+        "result, which is printed all the same, could not be stored.\n"
         "Examples:\n"
         "  palpate calibrate --mass '200 g'\n"
         "  palpate calibrate --mass 0.1 --falcon-firmware falcon.bin\n"

@@ -568,8 +568,12 @@ mv "$XDG_CONFIG_HOME/palpate" away && ln -s palpate "$XDG_CONFIG_HOME/palpate"
 bad 'an unreadable calibration' "the Falcon's calibration cannot be read" run scene.json --hand falcon-emulator --clock virtual
 good 'devices, unreadable' devices --haptic
 holds "force    the Falcon's calibration cannot be read"
-good 'calibrate, unreadable' calibrate --emulator
+"$palpate" calibrate --emulator >out.txt 2>err.txt
+status=$?
+[ $status -eq 1 ] && grep -q "^palpate: $XDG_CONFIG_HOME/palpate.*; the calibration was measured, and is not stored" err.txt && passed=$((passed + 1)) || complain "calibrate, unreadable, ends with $status: $(cat err.txt)"
 grep -qE 'would be used by palpate run SCENE --hand falcon-emulator --falcon-counts (419|420|421).$' out.txt && passed=$((passed + 1)) || complain "what could not be stored: $(cat out.txt)"
+"$palpate" calibrate --emulator --json >out.txt 2>err.txt
+[ $? -eq 1 ] && grep -q '"file": null' out.txt && near counts_per_torque 4200 0.005 || complain "calibrate --json, unreadable: $(cat out.txt err.txt)"
 rm -r "$XDG_CONFIG_HOME"
 
 # --- the same numbers every time
