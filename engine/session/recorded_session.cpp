@@ -77,6 +77,19 @@ std::string whyIncomplete(const JsonObject& file, bool finished)
     return {};
 }
 
+/// Returns which markers are missing in the file, as whyIncomplete() does.
+/// \param file  session.json
+/// \param path  of the markers, of which `found` have been read
+std::string whyFewerMarkers(const JsonObject& file, const std::filesystem::path& path, std::size_t found)
+{
+    const double counts = file.has("markers") ? file.number("markers") : 0; // only a finished recording has it
+    if (!(counts > double(found))) return {};
+    std::error_code none;
+    return path.string() + ": expected the " + counted(std::size_t(std::min(counts, 1e15)), "marker") +
+           " that session.json counts, found " +
+           (std::filesystem::exists(path, none) ? std::to_string(found) : std::string("no such file"));
+}
+
 /// Returns the scene of a recording of format 1, whose keys had other names, with the names of today.
 std::string withNamesOfToday(const std::string& scene)
 {
@@ -212,6 +225,9 @@ RecordedSession readDescription(const std::filesystem::path& folder)
         session.hand.hasGripper = senses("senses_grip");
     }
     session.markers = readMarkers(folder / "markers.jsonl");
+    if (const std::string fewer = whyFewerMarkers(file, folder / "markers.jsonl", session.markers.size());
+        !fewer.empty())
+        session.whyIncomplete += (session.whyIncomplete.empty() ? "" : "; ") + fewer;
     return session;
 }
 
@@ -222,6 +238,7 @@ RecordedSession readSession(const std::filesystem::path& folder)
     session.columns         = ticks->columns();
     session.records.resize(ticks->rows());
     ticks->read(session.records);
+    session.doubts = ticks->doubts();
     if (!holds(session.columns, "answers")) // as format 1: one at each tick, which is what simulated devices answer
         for (std::size_t i = 0; i < session.records.size(); ++i) {
             session.records[i].answers    = std::uint32_t(i + 1);

@@ -34,6 +34,7 @@ struct RecordedSession {
     std::uint64_t                columns = ~std::uint64_t(0); ///< that were recorded: bit k is sessionColumns()[k]
     std::vector<Marker>          markers;
     std::optional<SessionClocks> clocks; ///< of time 0; empty: an older recording, or it ended before
+    std::vector<std::string>     doubts; ///< TickSource::doubts() of all records
 };
 
 /// The number of the format that Recording writes: recordings.md describes it. Format 1, of version 0.1.0, had a file

@@ -39,7 +39,7 @@ void appendNumber(std::string& line, const SessionColumn& column, const char* fr
 
 } // namespace
 
-std::uint64_t writeTable(const RecordedSession& session, std::ostream& out)
+SessionTable writeTable(const RecordedSession& session, std::ostream& out)
 {
     const auto                        ticks = openTicks(session);
     std::vector<const SessionColumn*> columns;
@@ -65,7 +65,7 @@ std::uint64_t writeTable(const RecordedSession& session, std::ostream& out)
         lines.clear();
     }
     out << lines;
-    return ticks->rows();
+    return {ticks->rows(), ticks->doubts()};
 }
 
 } // namespace palp

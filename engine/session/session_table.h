@@ -5,11 +5,16 @@
 
 namespace palp {
 
+/// What a table holds.
+struct SessionTable {
+    std::uint64_t            ticks = 0;
+    std::vector<std::string> doubts{}; ///< TickSource::doubts()
+};
+
 /// Writes the ticks of a session as a table: a line of names, then a line for each tick, commas between the numbers.
 /// Each number is the shortest text that brings the stored one back; only columns that were recorded are there. The
 /// memory that is used does not grow with the session.
-/// \return the number of ticks
 /// \throws Error naming a file of the recording
-std::uint64_t writeTable(const RecordedSession& session, std::ostream& out);
+SessionTable writeTable(const RecordedSession& session, std::ostream& out);
 
 } // namespace palp

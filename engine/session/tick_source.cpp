@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "engine/core/contract.h"
@@ -84,10 +86,22 @@ public:
 
     void demandRows(std::uint64_t rows, std::size_t rowBytes) const
     {
-        const std::uint64_t there = bytes_ - std::min(bytes_, header_.begin);
-        if (rows > there / rowBytes)
+        if (rows > there() / rowBytes)
             throw Error(name_ + ": the header counts " + counted(rows, "tick") + " of " + std::to_string(rowBytes) +
-                        " bytes, found " + std::to_string(there) + " bytes");
+                        " bytes, found " + std::to_string(there()) + " bytes, " +
+                        counted(there() / rowBytes, "whole tick") +
+                        "; it may have been cut short while it was copied: copy it again");
+    }
+
+    /// Says what the file has beyond its rows; empty: nothing.
+    /// \pre demandRows()
+    [[nodiscard]] std::string beyond(std::uint64_t rows, std::size_t rowBytes) const
+    {
+        const std::uint64_t more = there() - rows * rowBytes;
+        if (more == 0) return {};
+        return name_ + ": expected the end after the " + counted(rows, "tick") + " that the header counts, found " +
+               (more < rowBytes ? counted(more, "byte") : counted(more / rowBytes, "tick")) +
+               " more; what lies beyond is not read";
     }
 
     void read(char* to, std::size_t bytes)
@@ -100,6 +114,8 @@ public:
     [[nodiscard]] const std::string& header() const noexcept { return header_.text; }
 
 private:
+    [[nodiscard]] std::uint64_t there() const noexcept { return bytes_ - std::min(bytes_, header_.begin); } ///< [bytes]
+
     std::string   name_;
     InputFile     in_;
     Header        header_;
@@ -118,7 +134,7 @@ struct Field {
 /// 'fortran_order': False, 'shape': (5000,), }.
 class TickRows : public TickSource {
 public:
-    explicit TickRows(const std::filesystem::path& path) : file_(path)
+    TickRows(const std::filesystem::path& path, bool finished) : file_(path)
     {
         Tokens tokens(file_.header());
         if (!tokens.take("{'descr': [")) refuse();
@@ -131,12 +147,13 @@ public:
         rows_ = *rows;
         demandColumns();
         file_.demandRows(rows_, rowBytes_);
+        if (finished) doubt(file_.beyond(rows_, rowBytes_)); // else rows may have been written and not yet counted
     }
 
     [[nodiscard]] std::uint64_t rows() const noexcept override { return rows_; }
     [[nodiscard]] std::uint64_t columns() const noexcept override { return columns_; }
 
-    void read(std::span<TickRecord> records) override
+    void readNext(std::span<TickRecord> records) override
     {
         for (std::size_t begin = 0; begin < records.size(); begin += kPart) {
             const std::size_t count = std::min(kPart, records.size() - begin);
@@ -152,6 +169,7 @@ public:
             }
         }
     }
+    [[nodiscard]] std::string fileOf(const SessionColumn&) const override { return file_.name(); }
 
 private:
     [[noreturn]] void refuse() const
@@ -226,6 +244,8 @@ struct ColumnFile {
         rows = *number;
         file.demandRows(rows, of.components * bytes);
     }
+
+    [[nodiscard]] std::string beyond() const { return file.beyond(rows, column->components * bytes); }
 };
 
 /// The columns of format 1.
@@ -246,13 +266,14 @@ public:
                 throw Error(files_.back().file.name() + ": expected the " + counted(files_.front().rows, "tick") +
                             " that " + files_.front().file.name() + " has, found " +
                             std::to_string(files_.back().rows) + "; the recording is damaged");
+            if (finished) doubt(files_.back().beyond());
         }
     }
 
     [[nodiscard]] std::uint64_t rows() const noexcept override { return rows_; }
     [[nodiscard]] std::uint64_t columns() const noexcept override { return columns_; }
 
-    void read(std::span<TickRecord> records) override
+    void readNext(std::span<TickRecord> records) override
     {
         std::ranges::fill(records, TickRecord());
         for (std::size_t begin = 0; begin < records.size(); begin += kPart) {
@@ -267,6 +288,10 @@ public:
             }
         }
     }
+    [[nodiscard]] std::string fileOf(const SessionColumn& column) const override
+    {
+        return std::ranges::find(files_, &column, &ColumnFile::column)->file.name();
+    }
 
 private:
     std::vector<ColumnFile> files_;
@@ -275,7 +300,61 @@ private:
     std::vector<char>       part_;
 };
 
+/// A component of a record that is NaN or infinite.
+struct NoNumber {
+    const SessionColumn* column    = nullptr; ///< null: all are finite
+    std::size_t          component = 0;
+    double               value     = 0;
+};
+
+/// Returns the first one of a record.
+/// \param columns  that are looked at: bit k is sessionColumns()[k]
+NoNumber noNumberIn(const TickRecord& record, std::uint64_t columns)
+{
+    for (std::size_t k = 0; k < sessionColumns().size(); ++k) {
+        const SessionColumn& column = sessionColumns()[k];
+        if (column.recordBytes() != sizeof(double) || (columns & std::uint64_t(1) << k) == 0) continue;
+        for (std::size_t n = 0; n < column.components; ++n) {
+            double value = 0;
+            std::memcpy(&value, reinterpret_cast<const char*>(&record) + column.offset + n * sizeof value,
+                        sizeof value);
+            if (!std::isfinite(value)) return {&column, n, value};
+        }
+    }
+    return {};
+}
+
 } // namespace
+
+void TickSource::read(std::span<TickRecord> records)
+{
+    readNext(records);
+    for (const TickRecord& record : records) look(record);
+}
+
+void TickSource::look(const TickRecord& record)
+{
+    const NoNumber found = noNumberIn(record, columns());
+    if (found.column && bad_++ == 0)
+        firstBad_ = fileOf(*found.column) + ": tick " + std::to_string(looked_) + ": expected a number as " +
+                    found.column->componentName(found.component) + ", found " +
+                    (std::isnan(found.value) ? "NaN" : "infinity");
+    ++looked_;
+}
+
+std::vector<std::string> TickSource::doubts() const
+{
+    std::vector<std::string> all = ofFiles_;
+    if (bad_ > 0)
+        all.push_back(firstBad_ +
+                      (bad_ > 1 ? "; " + counted(bad_ - 1, "later tick", "lacks", "lack") + " one too" : ""));
+    return all;
+}
+
+void TickSource::doubt(std::string sentence)
+{
+    if (!sentence.empty()) ofFiles_.push_back(std::move(sentence));
+}
 
 std::unique_ptr<TickSource> openTicks(const std::filesystem::path& folder, bool finished)
 {
@@ -283,7 +362,7 @@ std::unique_ptr<TickSource> openTicks(const std::filesystem::path& folder, bool 
     const auto      rows = folder / "ticks.npy";
     if (!std::filesystem::exists(rows, none) && std::filesystem::exists(folder / "time.npy", none))
         return std::make_unique<TickColumns>(folder, finished);
-    return std::make_unique<TickRows>(rows);
+    return std::make_unique<TickRows>(rows, finished);
 }
 
 } // namespace palp

@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "engine/session/tick_record.h"
 
@@ -29,7 +31,25 @@ public:
     /// Reads the next records.
     /// \pre as many are left
     /// \throws Error naming the file
-    virtual void read(std::span<TickRecord> records) = 0;
+    void read(std::span<TickRecord> records);
+
+    /// Returns what is wrong with the files, and with the numbers that have been read so far: a sentence each that
+    /// names the file and the tick. Nothing of it keeps a recording from being read.
+    [[nodiscard]] std::vector<std::string> doubts() const;
+
+protected:
+    virtual void                      readNext(std::span<TickRecord> records)   = 0;
+    [[nodiscard]] virtual std::string fileOf(const SessionColumn& column) const = 0; ///< that holds a column
+
+    /// Notes a sentence about the files; an empty one says nothing.
+    void doubt(std::string sentence);
+
+private:
+    void look(const TickRecord& record);
+
+    std::vector<std::string> ofFiles_;
+    std::string              firstBad_;             ///< about the first tick that has NaN or infinity
+    std::uint64_t            looked_ = 0, bad_ = 0; ///< ticks; those with such
 };
 
 /// Opens the ticks of a recording's folder.

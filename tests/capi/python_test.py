@@ -320,7 +320,8 @@ class Sessions(unittest.TestCase):
             palpate.read_recording(folder)
         about = (folder / "session.json").read_text()
         for was, now, words in (('"lost": 0', '"lost": 3', "3 ticks"), ('"stopped": null', '"stopped": "full"', "full"),
-                                ('"markers_lost": 0', '"markers_lost": 2', "2 markers")):
+                                ('"markers_lost": 0', '"markers_lost": 2', "2 markers"),
+                                ('"markers": 0', '"markers": 2', "markers.jsonl: expected the 2 markers")):
             (folder / "session.json").write_text(about.replace(was, now, 1))
             with self.assertWarns(RuntimeWarning) as warned:
                 palpate.read_recording(folder)

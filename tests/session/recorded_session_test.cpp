@@ -103,7 +103,7 @@ TEST(RecordedSession, OneOfFormat1IsReadWithTheNamesThatItsKeysHaveToday)
     }
     EXPECT_FALSE(compareSessions(session, made("again", 5))) << "what both have is equal";
     std::ostringstream table;
-    EXPECT_EQ(writeTable(session, table), 5u);
+    EXPECT_EQ(writeTable(session, table).ticks, 5u);
     EXPECT_EQ(table.str().find("wanted"), std::string::npos);
     EXPECT_EQ(scene.solver, "lavapipe");
     EXPECT_EQ(scene.complianceLaw, ComplianceLaw::blend);
@@ -251,6 +251,47 @@ TEST_F(SessionFolder, WhatItLacksIsSaid)
     EXPECT_EQ(lacks("\"stopped\": null", "\"stopped\": \"the disk\\u001b[31m was full\""), "the disk?[31m was full");
     EXPECT_EQ(lacks("\"lost\": 0", "\"lost\": 12"), "it lacks 12 ticks");
     EXPECT_EQ(lacks("\"markers_lost\": 0", "\"markers_lost\": 2"), "it lacks 2 markers");
+    const std::string file = (run / "markers.jsonl").string();
+    put("markers.jsonl", "{\"time\": 0.5, \"text\": \"a\"}\n");
+    EXPECT_EQ(lacks("\"markers\": 0", "\"markers\": 1"), "");
+    EXPECT_EQ(lacks("\"markers\": 0", "\"markers\": 3"),
+              file + ": expected the 3 markers that session.json counts, found 1");
+    std::filesystem::remove(file);
+    EXPECT_EQ(lacks("\"markers\": 0", "\"markers\": 1"),
+              file + ": expected the 1 marker that session.json counts, found no such file");
+    EXPECT_EQ(readSession(run).records.size(), 100u) << "its ticks are there";
+    EXPECT_EQ(lacks("\"markers\": 0,\n  \"markers_lost\": 0", "\"markers\": 1,\n  \"markers_lost\": 2"),
+              "it lacks 2 markers; " + file + ": expected the 1 marker that session.json counts, found no such file");
+    EXPECT_EQ(lacks("\"markers\": 0", "\"markers\": 0"), "");
+}
+
+TEST_F(SessionFolder, NumbersThatAreNoneAreNamedByTickAndColumn)
+{
+    const auto doubtsWith = [&](const auto& spoil) {
+        std::filesystem::remove_all(run);
+        Recording recording(run, someInfo());
+        for (int i = 0; i < 100; ++i) {
+            TickRecord record = recordNumber(i);
+            spoil(i, record);
+            recording.pushWaiting(record);
+        }
+        static_cast<void>(recording.finish());
+        std::ostringstream table;
+        const auto         doubts = readSession(run).doubts;
+        EXPECT_EQ(writeTable(readDescription(run), table).doubts, doubts);
+        return doubts;
+    };
+    constexpr double  kNone = std::numeric_limits<double>::quiet_NaN(), kMost = std::numeric_limits<double>::infinity();
+    const std::string file = (run / "ticks.npy").string();
+    using Doubts           = std::vector<std::string>;
+
+    EXPECT_EQ(doubtsWith([](int, TickRecord&) {}), Doubts());
+    EXPECT_EQ(doubtsWith([](int i, TickRecord& record) { record.hip.y = i == 42 ? kNone : record.hip.y; }),
+              Doubts{file + ": tick 42: expected a number as hip_y, found NaN"});
+    EXPECT_EQ(doubtsWith([](int i, TickRecord& record) { record.compliance = i > 97 ? -kMost : record.compliance; }),
+              Doubts{file + ": tick 98: expected a number as compliance, found infinity; 1 later tick lacks one too"});
+    EXPECT_EQ(doubtsWith([](int i, TickRecord& record) { record.time = i > 7 ? kNone : record.time; }),
+              Doubts{file + ": tick 8: expected a number as time, found NaN; 91 later ticks lack one too"});
 }
 
 TEST_F(SessionFolder, OneClockAloneIsNoMomentOfTimeZero)
@@ -278,7 +319,8 @@ TEST_F(SessionFolder, OldColumnsThatAKillLeftLongerAreCutToTheShortest)
     std::filesystem::remove(run / "ticks.npy");
     writeOldColumns(run, made("", 100).records);
     EXPECT_EQ(readSession(run).records.size(), 100u);
-    std::string force = contentsOf(run / "force.npy");
+    const std::string whole = contentsOf(run / "force.npy"), finished = contentsOf(run / "session.json");
+    std::string       force = whole;
     force.replace(force.find("(100, 3)"), 8, "(98, 3) ");
     put("force.npy", force);
 
@@ -287,15 +329,41 @@ TEST_F(SessionFolder, OldColumnsThatAKillLeftLongerAreCutToTheShortest)
     description.replace(description.find("\"finished\": true"), 16, "\"finished\": false");
     put("session.json", description);
     EXPECT_EQ(readSession(run).records.size(), 98u);
+    EXPECT_EQ(readSession(run).doubts, std::vector<std::string>());
+    put("session.json", finished);
+    put("force.npy", whole + "half");
+    EXPECT_EQ(readSession(run).doubts,
+              std::vector{(run / "force.npy").string() +
+                          ": expected the end after the 100 ticks that the header counts, found 4 bytes more; what "
+                          "lies beyond is not read"});
     put("force.npy", contentsOf(run / "time.npy"));
     EXPECT_TRUE(holds(refusal(), {"force.npy", "expected {'descr': '<f8'", "N, 3)", "(100,)"})) << refusal();
 }
 
-TEST_F(SessionFolder, DataBeyondWhatTheHeaderCountsIsIgnored)
+/// Those of a recording that still runs have been written, and are not yet counted.
+TEST_F(SessionFolder, DataBeyondWhatTheHeaderCountsIsIgnoredAndSaidOfAFinishedRecording)
 {
-    put("ticks.npy", contentsOf(run / "ticks.npy") + "half");
-
-    EXPECT_EQ(readSession(run).records.size(), 100u);
+    const std::string ticks = contentsOf(run / "ticks.npy"), file = (run / "ticks.npy").string();
+    const std::string json     = contentsOf(run / "session.json");
+    const auto        sentence = [&](const std::string& more) {
+        return file + ": expected the end after the 100 ticks that the header counts, found " + more +
+               " more; what lies beyond is not read";
+    };
+    using Doubts = std::vector<std::string>;
+    for (const auto& [bytes, more] :
+         {std::pair<std::size_t, std::string>{4, "4 bytes"}, {230, "1 tick"}, {4480, "20 ticks"}}) {
+        put("session.json", json);
+        put("ticks.npy", ticks + std::string(bytes, 'x'));
+        const RecordedSession session = readSession(run);
+        std::ostringstream    table;
+        EXPECT_EQ(session.records.size(), 100u);
+        EXPECT_EQ(session.doubts, Doubts{sentence(more)});
+        EXPECT_EQ(writeTable(readDescription(run), table).doubts, session.doubts);
+        std::string running = json;
+        running.replace(running.find("\"finished\": true"), 16, "\"finished\": false");
+        put("session.json", running);
+        EXPECT_EQ(readSession(run).doubts, Doubts());
+    }
 }
 
 TEST_F(SessionFolder, ColumnsOfALaterPalpateArePassedOver)
@@ -381,7 +449,9 @@ TEST_F(SessionFolder, BrokenFilesAreNamed)
     };
 
     put("ticks.npy", ticks.substr(0, ticks.size() - 1));
-    EXPECT_TRUE(holds(refusal(), {"ticks.npy", "counts 100", "224 bytes", "22399 bytes"})) << refusal();
+    EXPECT_TRUE(
+        holds(refusal(), {"ticks.npy", "counts 100", "224 bytes", "22399 bytes, 99 whole ticks;", "copy it again"}))
+        << refusal();
     put("ticks.npy", ticks.substr(0, 40));
     EXPECT_TRUE(holds(refusal(), {"ticks.npy", "ends within its header"})) << refusal();
     put("ticks.npy", "not numpy");

@@ -127,7 +127,7 @@ TEST(Recording, TheTableHoldsTheSameNumbers)
     static_cast<void>(recorded(folder / "run", 5'000)); // more than are in memory at once
 
     std::ostringstream written;
-    EXPECT_EQ(writeTable(readDescription(folder / "run"), written), 5'000u);
+    EXPECT_EQ(writeTable(readDescription(folder / "run"), written).ticks, 5'000u);
     std::istringstream csv(written.str());
     std::string        line;
     std::getline(csv, line);

@@ -25,17 +25,19 @@ void exportTable(const ExportOptions& o)
     if (std::filesystem::path(o.csv).extension() != ".csv") // so that no slip writes over a recording
         throw Error("--csv: expected a file that ends in .csv, found \"" + o.csv + "\"");
     const RecordedSession session = readDescription(o.folder);
-    std::uint64_t         ticks   = 0;
-    writeFileWhole(o.csv, [&](std::ostream& file) { ticks = writeTable(session, file); });
+    SessionTable          table;
+    writeFileWhole(o.csv, [&](std::ostream& file) { table = writeTable(session, file); });
     if (o.json)
         std::cout << jsonText(nlohmann::json{
             {"file", o.csv},
-            {"ticks", ticks},
+            {"ticks", table.ticks},
             {"finished", session.finished},
-            {"incomplete", session.whyIncomplete.empty() ? nlohmann::json() : nlohmann::json(session.whyIncomplete)}});
+            {"incomplete", session.whyIncomplete.empty() ? nlohmann::json() : nlohmann::json(session.whyIncomplete)},
+            {"warnings", table.doubts}});
     else
-        std::cout << counted(ticks, "tick") << " in " << o.csv << "\n";
+        std::cout << counted(table.ticks, "tick") << " in " << o.csv << "\n";
     if (!session.whyIncomplete.empty()) warn({o.folder + " is not complete: " + session.whyIncomplete});
+    warn(table.doubts);
 }
 
 } // namespace

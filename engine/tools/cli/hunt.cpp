@@ -66,6 +66,7 @@ void scoreRecorded(const HuntOptions& o)
     const SoftObject      object  = loadObject(scene).object;
     study::HuntScorer     scorer(scene, object.cloud());
     if (!session.whyIncomplete.empty()) warn({o.score + " is not complete: " + session.whyIncomplete});
+    warn(session.doubts);
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         throw Error(o.score + ": expected the cloud of the recording, found another one: " + scene.cloud +
                     " has changed");

@@ -62,6 +62,7 @@ void replay(const ReplayOptions& o)
     if (!session.whyIncomplete.empty())
         warn({o.folder + " is not complete: " + session.whyIncomplete + "; what it has is replayed, " +
               counted(session.records.size(), "tick")});
+    warn(session.doubts);
     const SoftObject object = loadObject(scene).object;
     if (!session.cloud.empty() && session.cloud != fingerprint(object.cloud()))
         warn({"the cloud is not the recorded one: " + scene.cloud + " has changed"});

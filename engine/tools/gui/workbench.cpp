@@ -201,6 +201,7 @@ void Workbench::adopt(OpenedObject opened)
         notices_.complain("the cloud is not the recorded one: " + object_.stage().scene().cloud + " has changed");
     if (!recorded.whyIncomplete.empty())
         notices_.complain(recorded.folder.string() + " is not complete: " + recorded.whyIncomplete);
+    for (const std::string& doubt : recorded.doubts) notices_.complain(doubt);
 }
 
 /// Shows what was assumed of the cloud, as a message and not as a fault.

@@ -518,6 +518,22 @@ grep -q 'lacking is not complete: the disk was full' err.txt && passed=$((passed
 sed -i 's/"stopped": "the disk was full"/"stopped": null/; s/"markers_lost": 0/"markers_lost": 3/' lacking/session.json
 good 'replay of a recording without some markers' replay lacking
 grep -q 'lacking is not complete: it lacks 3 markers' err.txt && passed=$((passed + 1)) || complain "a replay of a part: $(cat err.txt)"
+sed -i 's/"markers_lost": 3/"markers_lost": 0/; s/"markers": 0/"markers": 2/' lacking/session.json && rm lacking/markers.jsonl
+last=$(($(wc -c <lacking/ticks.npy) - 224)) # the row of tick 499
+printf '\377\377\377\377\377\377\377\377' | dd of=lacking/ticks.npy bs=1 seek=$((last + 8)) conv=notrunc 2>/dev/null
+head -c 448 /dev/zero >>lacking/ticks.npy
+good 'a table of a damaged recording' export lacking --csv lacking.csv
+for sentence in 'lacking/markers.jsonl: expected the 2 markers that session.json counts, found no such file' \
+    'lacking/ticks.npy: expected the end after the 500 ticks that the header counts, found 2 ticks more' \
+    'lacking/ticks.npy: tick 499: expected a number as hip_x, found NaN'; do
+    grep -qF "palpate: warning: $sentence" err.txt || grep -qF "lacking is not complete: $sentence" err.txt &&
+        passed=$((passed + 1)) || complain "a table of a damaged recording does not say '$sentence': $(cat err.txt)"
+done
+good 'a damaged recording for scripts' export lacking --csv lacking.csv --json
+holds '"incomplete": "lacking/markers.jsonl'
+holds 'tick 499: expected a number as hip_x'
+truncate -s $((last + 100)) lacking/ticks.npy
+bad 'a recording that was cut short' 'bytes, 499 whole ticks; it may have been cut short while it was copied: copy it again' export lacking --csv lacking.csv
 
 # --- a Falcon weighs a mass: an emulated one, of 4200 counts per N m and an arm of 210 g
 # near KEY EXPECTED SHARE, of tests/device/falcon_calibration_test.cpp

@@ -679,9 +679,11 @@ def read_recording(folder: Union[str, os.PathLike]) -> "tuple[np.ndarray, dict]"
     Warns if it is not complete.
     """
     place = Path(folder)
+    file = place / "markers.jsonl"
     try:
         ticks = np.load(place / "ticks.npy")
         about = json.loads((place / "session.json").read_text())
+        found = file.read_bytes().count(b"\n") if file.is_file() else 0
     except (OSError, ValueError) as error:
         raise Error(f"{place}: expected the folder of a recorded session, found {error}") from None
     if not isinstance(about, dict):
@@ -692,6 +694,9 @@ def read_recording(folder: Union[str, os.PathLike]) -> "tuple[np.ndarray, dict]"
             missing = f"it lacks {about[key]} {what}"
     if not about.get("finished"):
         missing = "its program was killed, or still records"
+    marks = about.get("markers")
+    if isinstance(marks, int) and marks > found and not missing:
+        missing = f"{file}: expected the {marks} markers that session.json counts, found {found}"
     if missing:
         warnings.warn(f"{place} is not complete: {missing}", RuntimeWarning, stacklevel=2)
     return ticks, about
