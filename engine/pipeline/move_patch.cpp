@@ -82,6 +82,16 @@ bool isAsGood(const ChartInChart& lies, const FootprintTable& shape, const Plate
     return true;
 }
 
+/// Returns whether what is pressed counts as held in the sheet's plane although nothing holds it. A window about it has
+/// the same where a tie crosses it.
+bool isOnOverhang(const Patch& patch)
+{
+    if (patch.heldInPlane.values().empty() || patch.tied > 0) return false;
+    const auto        at   = nodeAtContact(patch);
+    const std::size_t node = std::size_t(at.i) * std::size_t(patch.plate.grid.nodesZ()) + std::size_t(at.j);
+    return patch.heldInPlane.values()[node] > patch.held.values()[node] + 0.5;
+}
+
 } // namespace
 
 std::optional<Patch> movePatch(const Patch& from, const SoftObject& object, const Contact& contact,
@@ -112,6 +122,7 @@ std::optional<Patch> movePatch(const Patch& from, const SoftObject& object, cons
     if (!areOnOnePiece(patch, unitLoad(from, settings), load)) return {};
     patch.heldNodes = heldNodesUnder(patch, load); // the window's own fingertip may have lain across a slit
     if (isLoose(patch, settings)) return {};
+    if (isOnOverhang(patch)) return {}; // which counts as held where it is not what is touched
 
     if (chartDoubt(patch) > 2 * kMostDoubt) return {}; // already by the dent of the contact before
     FootprintLattice own = lattice;

@@ -159,6 +159,12 @@ void demandConverged(const Patch& patch)
     throw Error(placeText(patch.contact) + ": " + unconvergedText(patch));
 }
 
+void demandUsable(const Patch& patch)
+{
+    constexpr double kUseless = 0.1; // of the answer: as much as the theory is off where `touch` warns of it [1]
+    if (!(patch.report.errorEstimate.value_or(1) < kUseless)) demandConverged(patch); // NaN is refused too
+}
+
 std::string directionText(const glm::dvec3& direction)
 {
     char text[64];

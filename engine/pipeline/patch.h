@@ -245,6 +245,11 @@ void demandDeformed(const Patch& patch, const char* hint = "try a larger --windo
 /// \throws Error naming the place, unless patch.report.converged
 void demandConverged(const Patch& patch);
 
+/// Refuses an answer that is no answer: its error is a tenth of it or more, or nobody knows it. One that merely misses
+/// the tolerance has a warning.
+/// \throws Error naming the place
+void demandUsable(const Patch& patch);
+
 /// Returns a unit vector as complaints and warnings show it: "0.00,0.60,0.80".
 [[nodiscard]] std::string directionText(const glm::dvec3& direction);
 

@@ -4,7 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -294,6 +297,26 @@ TEST(Pipeline, WhatIsNoSurfaceIsAnOutcomeAndNotACrash)
     EXPECT_EQ(displaced(wire.cloud(), patch, 1)[3], line[3]);
 
     EXPECT_THROW((void)wire.touch({1, 0, 0}, {0, 0, 1}, kCoarse), Error) << "a contact far from the cloud";
+}
+
+TEST(Pipeline, AnAnswerWithAnErrorOfATenthIsRefused)
+{
+    Patch      patch;
+    const auto isRefused = [&](std::optional<double> error, bool converged = false) {
+        patch.report.errorEstimate = error;
+        patch.report.converged     = converged;
+        try {
+            demandUsable(patch);
+        } catch (const Error& refusal) {
+            return std::string(refusal.what()).find("is not as good as asked for") != std::string::npos;
+        }
+        return false;
+    };
+    EXPECT_TRUE(isRefused(0.88));
+    EXPECT_TRUE(isRefused(std::numeric_limits<double>::quiet_NaN()));
+    EXPECT_TRUE(isRefused({})) << "nobody knows it";
+    EXPECT_FALSE(isRefused(0.01)) << "it has a warning";
+    EXPECT_FALSE(isRefused(0.5, true)) << "as good as asked for";
 }
 
 TEST(Pipeline, DiscretisationErrorBoundsTheTrueErrorWithinAFactorOfThree)

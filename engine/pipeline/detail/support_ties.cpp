@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/pipeline/detail/ground.h"
 #include "engine/pipeline/detail/node_pieces.h"
 #include "engine/pipeline/detail/whole_object.h"
 
@@ -87,6 +88,21 @@ Nodes tieOf(const Patch& patch, const Nodes& support, double near)
     return {};
 }
 
+/// Returns for each node whether it lies outside of the sheet, not in a hole.
+std::vector<bool> outside(const Patch& patch)
+{
+    const PlateGrid& grid     = patch.plate.grid;
+    const auto       isAtSide = [&](std::size_t node) {
+        const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
+        return i == 0 || j == 0 || i == grid.cellsX || j == grid.cellsZ;
+    };
+    std::vector<bool> is(grid.nodes());
+    for (const Nodes& piece : connected(grid, [&](std::size_t n) { return !isOnSheet(patch, n); }))
+        if (std::ranges::any_of(piece, isAtSide))
+            for (const std::size_t n : piece) is[n] = true;
+    return is;
+}
+
 } // namespace
 
 HeldInPlane heldInPlane(const Patch& patch)
@@ -94,19 +110,21 @@ HeldInPlane heldInPlane(const Patch& patch)
     constexpr double kNear = 0.125; // of the root of the sheet's area [1]
     HeldInPlane      held{patch.held};
     if (patch.held.values().empty() || patch.covered.values().empty()) return held;
-    const PlateGrid& grid     = patch.plate.grid;
-    const auto       supports = connected(grid, [&](std::size_t n) { return isHeld(patch, n); });
+    held.share                  = heldUpToBorder(patch);
+    const PlateGrid&   grid     = patch.plate.grid;
+    const auto         counts   = [&](std::size_t n) { return held.share.values()[n] >= 0.5; };
+    std::vector<Nodes> supports = connected(grid, counts);
+    std::erase_if(supports, [&](const Nodes& support) { // ground that hangs together with no support
+        return std::ranges::none_of(support, [&](std::size_t n) { return isOnSheet(patch, n); });
+    });
     if (supports.size() < 2) return held;
-    const auto isAtSide = [&](std::size_t node) {
-        const int i = int(node) / grid.nodesZ(), j = int(node) % grid.nodesZ();
-        return i == 0 || j == 0 || i == grid.cellsX || j == grid.cellsZ;
-    };
-    double area = 0; // [m^2]
+    const std::vector<bool> isOutside = outside(patch);
+    double                  area      = 0; // [m^2]
     for (std::size_t n = 0; n < grid.nodes(); ++n) area += isOnSheet(patch, n);
     area *= grid.spacingX * grid.spacingZ;
     std::size_t reaching = 0;
     for (const Nodes& support : supports) {
-        const bool  isOut = std::ranges::any_of(support, isAtSide);
+        const bool  isOut = std::ranges::any_of(support, [&](std::size_t n) { return isOutside[n]; });
         const Nodes tie   = isOut ? Nodes{} : tieOf(patch, support, kNear * std::sqrt(area));
         for (const std::size_t node : tie) held.share.values()[node] = 1;
         const bool tied = !tie.empty();

@@ -6,7 +6,7 @@ namespace palp {
 
 /// What is held in the plane of the sheet.
 struct HeldInPlane {
-    NodeField share{};     ///< of the nodes [1]: Patch::held, and ties; empty: nothing is held
+    NodeField share{};     ///< of the nodes [1]: heldUpToBorder(), and ties; empty: nothing is held
     int       tied    = 0; ///< supports
     int       without = 0; ///< supports that the sheet surrounds, beside another one, and that are not tied
 };

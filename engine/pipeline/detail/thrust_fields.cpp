@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "engine/pipeline/detail/node_distances.h"
 #include "engine/pipeline/detail/node_pieces.h"
 #include "engine/pipeline/detail/whole_object.h"
 
@@ -14,54 +15,12 @@ namespace {
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
-/// Returns the square of the distance of each node from the nearest one of a piece [m^2]; infinite if it has none.
-/// \source Felzenszwalb and Huttenlocher 2012
-NodeField squaredDistances(const PlateGrid& grid, const std::vector<int>& pieceOf, int piece)
-{
-    const auto   at = [&](int i, int j) { return std::size_t(i) * std::size_t(grid.nodesZ()) + std::size_t(j); };
-    NodeField    along(grid, kFar), squares(grid); // along z first
-    const double hx2 = grid.spacingX * grid.spacingX;
-    for (int i = 0; i <= grid.cellsX; ++i) {
-        const auto sweep = [&](int first, int end, int step) {
-            double away = kFar;
-            for (int j = first; j != end; j += step) {
-                away        = pieceOf[at(i, j)] == piece ? 0 : away + grid.spacingZ;
-                along(i, j) = std::min(along(i, j), away);
-            }
-        };
-        sweep(0, grid.nodesZ(), 1);
-        sweep(grid.cellsZ, -1, -1);
-    }
-    // Then the least over x of (i - k)^2 hx^2 + along(k)^2: the lower envelope of parabolas, which the last ones of a
-    // stack make up, each from a place on.
-    std::vector<int>    stack(std::size_t(grid.nodesX()));
-    std::vector<double> from(stack.size());
-    const auto          square = [&](int k, int j) { return along(k, j) * along(k, j); };
-    for (int j = 0; j <= grid.cellsZ; ++j) {
-        int        count = 0;
-        const auto meet  = [&](int a, int b) { // place at which b becomes lower than a, which comes before it [cells]
-            return (a + b) / 2.0 + (square(b, j) - square(a, j)) / (2 * hx2 * (b - a));
-        };
-        for (int k = 0; k <= grid.cellsX; ++k) {
-            if (along(k, j) == kFar) continue;
-            while (count > 0 && meet(stack[std::size_t(count - 1)], k) <= from[std::size_t(count - 1)]) --count;
-            from[std::size_t(count)]    = count > 0 ? meet(stack[std::size_t(count - 1)], k) : -kFar;
-            stack[std::size_t(count++)] = k;
-        }
-        for (int i = 0, low = 0; i <= grid.cellsX; ++i) {
-            while (low + 1 < count && from[std::size_t(low + 1)] < i) ++low;
-            const int k   = count > 0 ? stack[std::size_t(low)] : 0;
-            squares(i, j) = count > 0 ? (i - k) * (i - k) * hx2 + square(k, j) : kFar;
-        }
-    }
-    return squares;
-}
-
 /// Returns the square of the distance from each piece [m^2].
 std::vector<NodeField> distancesFrom(const PlateGrid& grid, const std::vector<int>& pieceOf, int pieces)
 {
     std::vector<NodeField> squares;
-    for (int p = 0; p < pieces; ++p) squares.push_back(squaredDistances(grid, pieceOf, p));
+    for (int p = 0; p < pieces; ++p)
+        squares.push_back(squaredDistances(grid, [&](std::size_t n) { return pieceOf[n] == p; }));
     return squares;
 }
 
@@ -91,11 +50,9 @@ double shareOf(const std::vector<NodeField>& squares, std::size_t piece, std::si
 
 namespace {
 
-/// Puts the largest piece first, and the others in the order of their distance from the touch.
+/// Puts pieces in the order of their distance from the touch.
 void sortByNearness(std::vector<Nodes>& pieces, const PlateGrid& grid)
 {
-    if (pieces.empty()) return;
-    std::iter_swap(pieces.begin(), std::ranges::max_element(pieces, {}, &Nodes::size));
     const auto away = [&](const Nodes& piece) {
         double least = kFar;
         for (const std::size_t node : piece) {
@@ -105,7 +62,27 @@ void sortByNearness(std::vector<Nodes>& pieces, const PlateGrid& grid)
         }
         return least;
     };
-    std::ranges::stable_sort(pieces.begin() + 1, pieces.end(), {}, away);
+    std::ranges::stable_sort(pieces, {}, away);
+}
+
+/// Returns pieces without the largest one around each part of the sheet, where Airy's function is 0: forces pass
+/// between the others and that.
+/// \param parts  of the sheet, with the pieces around them
+std::vector<Nodes> besidesLargest(const std::vector<Nodes>& pieces, const std::vector<Nodes>& parts,
+                                  const PlateGrid& grid)
+{
+    std::vector<std::size_t> partOf(grid.nodes());
+    for (std::size_t p = 0; p < parts.size(); ++p)
+        for (const std::size_t node : parts[p]) partOf[node] = p;
+    std::vector<const Nodes*> largest(parts.size());
+    for (const Nodes& piece : pieces) {
+        const Nodes*& most = largest[partOf[piece.front()]];
+        if (!most || most->size() < piece.size()) most = &piece;
+    }
+    std::vector<Nodes> others;
+    for (const Nodes& piece : pieces)
+        if (largest[partOf[piece.front()]] != &piece) others.push_back(piece);
+    return others;
 }
 
 } // namespace
@@ -114,17 +91,27 @@ FreePieces freePieces(const Patch& patch, const HeldInPlane& held)
 {
     constexpr std::size_t kFewest = 9;  // nodes: fewer are a gap between points
     constexpr std::size_t kMost   = 16; // pieces: each takes three solutions
+    constexpr double      kBand   = 4;  // cells along the border: farther out the ground behind what is held may end
     FreePieces            pieces{std::vector<int>(patch.plate.grid.nodes(), FreePieces::kNone)};
     if (patch.covered.values().empty()) return pieces;
     const auto isInPlane = [&](std::size_t n) { return !held.share.values().empty() && held.share.values()[n] >= 0.5; };
-    std::vector<Nodes> found =
-        connected(patch.plate.grid, [&](std::size_t n) { return !isOnSheet(patch, n) && !isInPlane(n); });
+    const PlateGrid& grid   = patch.plate.grid;
+    const double     wide   = kBand * std::max(grid.spacingX, grid.spacingZ);
+    const NodeField  away   = squaredDistances(grid, [&](std::size_t n) { return isOnSheet(patch, n); });
+    const auto       isFree = [&](std::size_t n) {
+        return !isOnSheet(patch, n) && !isInPlane(n) && away.values()[n] <= wide * wide;
+    };
+    std::vector<Nodes> found = connected(grid, isFree);
     std::erase_if(found, [](const Nodes& piece) { return piece.size() < kFewest; });
-    sortByNearness(found, patch.plate.grid);
-    pieces.count   = int(std::min(found.size(), kMost));
-    pieces.leftOut = int(found.size()) - pieces.count;
-    for (std::size_t p = 0; p < found.size(); ++p)
-        for (const std::size_t node : found[p]) pieces.of[node] = p < kMost ? int(p) : 0;
+    const auto         parts  = connected(grid, [&](std::size_t n) { return isOnSheet(patch, n) || isFree(n); });
+    std::vector<Nodes> others = besidesLargest(found, parts, grid);
+    sortByNearness(others, grid);
+    pieces.count   = found.empty() ? 0 : int(std::min(others.size() + 1, kMost));
+    pieces.leftOut = found.empty() ? 0 : int(others.size() + 1) - pieces.count;
+    for (const Nodes& piece : found)
+        for (const std::size_t node : piece) pieces.of[node] = 0;
+    for (std::size_t p = 0; int(p + 1) < pieces.count; ++p)
+        for (const std::size_t node : others[p]) pieces.of[node] = int(p + 1);
     pieces.leftOut += held.without;
     return pieces;
 }

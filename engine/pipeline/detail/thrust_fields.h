@@ -11,12 +11,13 @@ namespace palp {
 struct FreePieces {
     static constexpr int kNone = -1;
 
-    std::vector<int> of; ///< piece of each node; kNone: it lies on the sheet, is held, or in a gap between points
+    /// Piece of each node; kNone: it lies on the sheet, is held, away from the border, or in a gap between points.
+    std::vector<int> of;
     int              count   = 0;
     int              leftOut = 0; ///< pieces farther away, which count as the first, and HeldInPlane::without
 };
 
-/// Finds them, the largest first, and the others as they are near the touch.
+/// Finds them: first the largest around each part of the sheet, as one, and then the others as they are near the touch.
 [[nodiscard]] FreePieces freePieces(const Patch& patch, const HeldInPlane& held);
 
 /// Returns the fields by which Airy's function is another linear function at each piece, three for each but the first:

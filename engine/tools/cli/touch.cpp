@@ -281,6 +281,7 @@ void touch(const TouchOptions& options)
     const Patch   patch       = deform(object, contact, settings, solver);
     tellTakeover(solver.takeoverSince(told), patch);
     demandDeformed(patch);
+    demandUsable(patch);
 
     nlohmann::json report = patchJson(object, patch, settings, force, solver);
     refuseOverflow(report);
