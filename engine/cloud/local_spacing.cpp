@@ -55,8 +55,9 @@ constexpr double kScatter = 0.15, kSureScatter = 0.5;
 /// They are a surface after all if it goes on: this share of them stands among its like and scatters less [1].
 constexpr double kGoesOn = 0.1;
 
-/// Where points coincide no spacing falls below this share of the cloud's [1]: radii must stay above zero.
-constexpr double kLeast = 0.05;
+/// The spacing of points that coincide over that of the cloud [1]: radii must stay above zero. Points that are only
+/// near each other have their own: within this share of the cloud's there may be half of all.
+constexpr double kCoinciding = 0.05;
 
 /// Returns the value that half of the others do not exceed; reorders.
 double median(std::vector<double>& values)
@@ -115,7 +116,8 @@ public:
             } else {
                 sixth = index_.nearest(index_.positionsByRank()[rank], kNeighbours + 1).back().distance;
             }
-            guess_[rank] = std::max(sixth * std::sqrt(std::numbers::pi / kNeighbours), kLeast * usual);
+            const double own = sixth * std::sqrt(std::numbers::pi / kNeighbours);
+            guess_[rank]     = own > 0 ? own : kCoinciding * usual;
         });
     }
 

@@ -10,6 +10,9 @@
 #include <optional>
 #include <string>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
 #include "engine/cloud/detail/embree.h"
 #include "engine/cloud/detail/point_block.h"
 #include "engine/cloud/morton.h"
@@ -32,6 +35,10 @@
 //     float d^2 >  (r + slack)^2 (1 + 2^-20)   are certainly outside,
 //
 // and the few between are decided in doubles from the caller's own positions.
+//
+// Where very many points lie within the slack of each other that would be all of them, for each search. So many points
+// in one cell of the curve, which is as wide as the slack about them, have an index of their own, with index units of
+// their size, and so on within it.
 
 namespace palp {
 namespace {
@@ -54,6 +61,10 @@ constexpr int kLeastScaling = -480;
 constexpr float kNowhere = 1e18F;
 
 constexpr std::size_t kPiece = 50'000; ///< least points of a thread
+
+/// As many points in one cell of the curve are a clump [1]. Fewer cost each search less than another tree; no cloud
+/// that is about as dense everywhere has them.
+constexpr std::uint32_t kClump = 256;
 
 [[nodiscard]] double squaredDistance(const glm::dvec3& a, const glm::dvec3& b) noexcept
 {
@@ -145,8 +156,16 @@ struct IndexFrame {
     return spacing * std::sqrt(points / std::numbers::pi);
 }
 
-/// Returns the order of the points along the Morton curve; equal codes by rising index.
-[[nodiscard]] std::vector<std::uint32_t> mortonOrder(std::span<const glm::dvec3> positions, const IndexFrame& frame)
+/// Points along the Morton curve.
+struct CurveOrder {
+    struct Cell {
+        std::size_t begin = 0, end = 0; ///< in `points`
+    };
+    std::vector<std::uint32_t> points; ///< equal codes by rising index
+    std::vector<Cell>          clumps; ///< cells of at least kClump points
+};
+
+[[nodiscard]] CurveOrder mortonOrder(std::span<const glm::dvec3> positions, const IndexFrame& frame)
 {
     struct Key {
         std::uint64_t code;
@@ -160,8 +179,20 @@ struct IndexFrame {
         }
     });
     if (!std::is_sorted(keys.begin(), keys.end())) sortInParallel(keys);
-    std::vector<std::uint32_t> order(keys.size());
-    std::transform(keys.begin(), keys.end(), order.begin(), [](const Key& key) { return key.point; });
+    CurveOrder order;
+    order.points.resize(keys.size());
+    std::transform(keys.begin(), keys.end(), order.points.begin(), [](const Key& key) { return key.point; });
+    constexpr std::size_t kStep = kClump / 2; // a clump holds two points that are this far from each other
+    for (std::size_t i = 0; i + kStep < keys.size(); i += kStep) {
+        const std::uint64_t code = keys[i].code;
+        if (code != keys[i + kStep].code) continue;
+        const auto  isThere = [&](const Key& key) { return key.code == code; };
+        std::size_t begin = i, end = i + kStep;
+        while (begin > 0 && isThere(keys[begin - 1])) --begin;
+        while (end < keys.size() && isThere(keys[end])) ++end;
+        if (end - begin >= kClump) order.clumps.push_back({begin, end});
+        i = std::max(i, (end - 1) / kStep * kStep); // the next one begins behind it
+    }
     return order;
 }
 
@@ -333,19 +364,59 @@ void keepNearest(std::vector<Neighbour>& found, std::size_t k)
 } // namespace
 
 struct NeighbourIndex::Impl {
-    IndexFrame              frame;
-    std::vector<PointBlock> blocks;
-    std::vector<glm::dvec3> exact; ///< [m] the caller's positions in the order of the blocks
-    BoxTree                 tree;
-    BlockFilter             filter  = blockFilters().front();
-    double                  spacing = 0; ///< [m]
+    /// Whole blocks of points so close together that the floats of the others do not tell them apart.
+    struct Clump {
+        std::uint32_t         firstBlock = 0, endBlock = 0;
+        glm::dvec3            low{}, high{}; ///< [m]
+        std::unique_ptr<Impl> index;         ///< its slots are those of the blocks; its points do not count
+    };
 
-    Impl(std::span<const glm::dvec3> positions, const IndexFrame& indexFrame, std::span<const std::uint32_t> order)
-        : frame(indexFrame), blocks(blocksOf(positions, order, frame)), tree(boxesOf(blocks, positions.size()))
+    IndexFrame                 frame;
+    std::vector<PointBlock>    blocks;
+    std::vector<glm::dvec3>    exact;  ///< [m] the caller's positions in the order of the blocks
+    std::vector<Clump>         clumps; ///< by rising block; usually there are none
+    std::vector<std::uint32_t> boxes;  ///< what each box of the tree is: a block, or of a clump the first; if any are
+    BoxTree                    tree;
+    BlockFilter                filter  = blockFilters().front();
+    double                     spacing = 0; ///< [m]
+
+    Impl(std::span<const glm::dvec3> positions, const IndexFrame& indexFrame, std::span<const std::uint32_t> order,
+         std::vector<Clump> clumpsInOrder, const BoxTree::Device& device)
+        : frame(indexFrame), blocks(blocksOf(positions, order, frame)), clumps(std::move(clumpsInOrder)),
+          tree(device, treeBoxes(positions.size()))
     {
         exact.reserve(order.size());
         for (const std::uint32_t point : order) exact.push_back(positions[point]);
     }
+
+    [[nodiscard]] static std::unique_ptr<Impl> make(std::span<const glm::dvec3> positions,
+                                                    const BoxTree::Device&      device);
+
+    /// Makes the indices of clumps, and orders their points by them.
+    [[nodiscard]] static std::vector<Clump> clumpsOf(std::span<const glm::dvec3> positions, const IndexFrame& frame,
+                                                     CurveOrder& order, const BoxTree::Device& device);
+
+    /// Returns the boxes of the blocks, with one for each clump, and notes which is which.
+    [[nodiscard]] std::vector<BoxTree::Box> treeBoxes(std::size_t points);
+
+    /// Returns the clump that begins with a block; null if that is a block like others.
+    [[nodiscard]] const Clump* clumpAt(std::uint32_t block) const noexcept
+    {
+        const auto clump = std::ranges::lower_bound(clumps, block, {}, &Clump::firstBlock);
+        return clump != clumps.end() && clump->firstBlock == block ? &*clump : nullptr;
+    }
+
+    /// Appends the slots, counted from `first`, within a radius [m], until there are more than `most`. Allocates only
+    /// if the capacity does not suffice.
+    void appendSlots(const glm::dvec3& centre, double radius, std::uint32_t first, std::size_t most,
+                     std::vector<std::uint32_t>& slots) const;
+    void appendClump(const Clump& clump, const glm::dvec3& centre, double radius, std::uint32_t first, std::size_t most,
+                     std::vector<std::uint32_t>& slots) const;
+
+    /// Adds to the `best`, at most k, a heap with the furthest in front; their distances are squared [m^2]. `first` is
+    /// that of our slots among those of the whole index.
+    void addNearest(const glm::dvec3& centre, std::size_t k, const Impl& whole, std::uint32_t first,
+                    std::vector<Neighbour>& best) const;
 
     [[nodiscard]] std::uint32_t pointAt(std::size_t slot) const noexcept
     {
@@ -395,7 +466,8 @@ struct NeighbourIndex::Impl {
     void gather(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                 std::vector<std::uint32_t>& found) const;
 
-    void gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+    /// \param most  returns false if that many or fewer are not all, or if they lie in very many blocks
+    bool gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius, std::size_t most,
                      std::vector<std::uint32_t>& found) const;
 
     /// Fills `candidates` with at least the k nearest.
@@ -403,6 +475,159 @@ struct NeighbourIndex::Impl {
     [[nodiscard]] bool findCandidates(const FloatSphere& sphere, double start, std::size_t k,
                                       Candidates& candidates) const;
 };
+
+std::unique_ptr<NeighbourIndex::Impl> NeighbourIndex::Impl::make(std::span<const glm::dvec3> positions,
+                                                                 const BoxTree::Device&      device)
+{
+    const IndexFrame frame(positions);
+    CurveOrder       order = mortonOrder(positions, frame);
+    auto             inner = clumpsOf(positions, frame, order, device);
+    return std::make_unique<Impl>(positions, frame, order.points, std::move(inner), device);
+}
+
+std::vector<NeighbourIndex::Impl::Clump> NeighbourIndex::Impl::clumpsOf(std::span<const glm::dvec3> positions,
+                                                                        const IndexFrame& frame, CurveOrder& order,
+                                                                        const BoxTree::Device& device)
+{
+    std::vector<Clump>      clumps;
+    std::vector<glm::dvec3> inner; // [m]
+    for (const CurveOrder::Cell& cell : order.clumps) {
+        const auto firstBlock = std::uint32_t((cell.begin + kBlockPoints - 1) / kBlockPoints);
+        const auto endBlock   = std::uint32_t(cell.end / kBlockPoints);
+        const auto begin      = order.points.begin() + std::ptrdiff_t(firstBlock) * kBlockPoints;
+        const auto end        = order.points.begin() + std::ptrdiff_t(endBlock) * kBlockPoints;
+        inner.clear();
+        glm::dvec3 low(INFINITY), high(-INFINITY);
+        for (auto point = begin; point != end; ++point) {
+            inner.push_back(positions[*point]);
+            low  = glm::min(low, inner.back());
+            high = glm::max(high, inner.back());
+        }
+        // Points at one place cannot be told apart, nor can those closer than the finest index units.
+        const double wide = std::max(1.0, largest(frame.to(inner.front())) > 1 ? frame.reach : 0);
+        if (low == high || IndexFrame(inner).scale <= 2 * frame.scale / wide) continue;
+        auto index = make(inner, device);
+
+        std::vector<std::uint32_t> points(inner.size());
+        for (std::size_t slot = 0; slot < points.size(); ++slot) points[slot] = begin[index->pointAt(slot)];
+        std::ranges::copy(points, begin);
+        clumps.push_back({firstBlock, endBlock, low, high, std::move(index)});
+    }
+    return clumps;
+}
+
+std::vector<BoxTree::Box> NeighbourIndex::Impl::treeBoxes(std::size_t points)
+{
+    std::vector<BoxTree::Box> ofBlocks = boxesOf(blocks, points), ofTree;
+    if (clumps.empty()) return ofBlocks;
+    for (std::uint32_t block = 0; block < blocks.size(); ++block) {
+        boxes.push_back(block);
+        ofTree.push_back(ofBlocks[block]);
+        const Clump* clump = clumpAt(block);
+        if (!clump) continue;
+        for (; block + 1 < clump->endBlock; ++block) {
+            ofTree.back().low  = glm::min(ofTree.back().low, ofBlocks[block + 1].low);
+            ofTree.back().high = glm::max(ofTree.back().high, ofBlocks[block + 1].high);
+        }
+    }
+    return ofTree;
+}
+
+void NeighbourIndex::Impl::appendSlots(const glm::dvec3& centre, double radius, std::uint32_t first, std::size_t most,
+                                       std::vector<std::uint32_t>& slots) const
+{
+    const auto sphere = sphereFor(centre, radius);
+    if (!sphere)
+        return eachWithin(centre, radius, [&](std::size_t slot) { slots.push_back(first + std::uint32_t(slot)); });
+    const Shell  shell   = sphere->shell(radius * frame.scale);
+    const double radius2 = radius * radius;
+
+    // Blocks wait until they are many, and come in rising order then: of all but huge balls so do the slots.
+    std::array<std::uint32_t, 2048> waiting; // each entry is written before it is read
+    std::size_t                     count  = 0;
+    const auto                      append = [&] {
+        std::sort(waiting.begin(), waiting.begin() + std::ptrdiff_t(count));
+        for (std::size_t k = 0; k < count && slots.size() <= most; ++k) {
+            if (const Clump* clump = clumpAt(waiting[k])) {
+                appendClump(*clump, centre, radius, first, most, slots);
+                continue;
+            }
+            const std::uint32_t from = waiting[k] * kBlockPoints;
+            float               distance2[kBlockPoints];
+            for (auto near = filter.measure(blocks[waiting[k]], shell, distance2); near != 0; near &= near - 1) {
+                const auto lane = std::uint32_t(std::countr_zero(near));
+                if (distance2[lane] <= shell.inner2 || squaredDistance(exact[from + lane], centre) <= radius2)
+                    slots.push_back(first + from + lane);
+            }
+        }
+        count = 0;
+    };
+    tree.query(sphere->centre(), sphere->searchRadius(radius * frame.scale), [&](std::uint32_t box, float& search) {
+        waiting[count++] = boxes.empty() ? box : boxes[box];
+        if (count == waiting.size()) append();
+        if (slots.size() > most) search = 0;
+    });
+    append();
+}
+
+void NeighbourIndex::Impl::appendClump(const Clump& clump, const glm::dvec3& centre, double radius, std::uint32_t first,
+                                       std::size_t most, std::vector<std::uint32_t>& slots) const
+{
+    constexpr double kRound  = 1e-12; // [1] more than the squares below round by
+    const glm::dvec3 nearest = glm::clamp(centre, clump.low, clump.high);
+    const glm::dvec3 away    = glm::max(glm::abs(centre - clump.low), glm::abs(centre - clump.high));
+    const double     radius2 = radius * radius;
+    if (squaredDistance(nearest, centre) * (1 - kRound) > radius2) return;
+    first += clump.firstBlock * kBlockPoints;
+    if (glm::dot(away, away) * (1 + kRound) > radius2)
+        return clump.index->appendSlots(centre, radius, first, most, slots);
+    const std::size_t room  = most < slots.size() ? 0 : most - slots.size(); // one more says that there are more
+    const std::size_t count = std::min(clump.index->exact.size(), room + (room < SIZE_MAX));
+    slots.resize(slots.size() + count);
+    std::iota(slots.end() - std::ptrdiff_t(count), slots.end(), first);
+}
+
+void NeighbourIndex::Impl::addNearest(const glm::dvec3& centre, std::size_t k, const Impl& whole, std::uint32_t first,
+                                      std::vector<Neighbour>& best) const
+{
+    const auto add = [&](std::size_t slot) {
+        const Neighbour other{whole.pointAt(first + slot), squaredDistance(exact[slot], centre)};
+        if (best.size() == k) {
+            if (!nearer(other, best.front())) return;
+            std::ranges::pop_heap(best, nearer);
+            best.pop_back();
+        }
+        best.push_back(other);
+        std::ranges::push_heap(best, nearer);
+    };
+    const auto bound = [&] { return best.size() < k ? double(INFINITY) : best.front().distance; };
+
+    const glm::dvec3 place = frame.to(centre);
+    if (!frame.searchable(place)) {
+        for (std::size_t slot = 0; slot < exact.size(); ++slot) add(slot);
+        return;
+    }
+    const FloatSphere sphere(place);
+    const double      everything = 2 * (largest(place) + frame.reach); // sqrt(3) would do
+    double            reach      = std::min(everything, std::sqrt(bound()) * frame.scale);
+    Shell             shell      = sphere.shell(reach);
+    tree.query(sphere.centre(), sphere.searchRadius(reach), [&](std::uint32_t box, float& search) {
+        constexpr double    kRound = 1e-12; // [1] more than a square rounds by
+        const std::uint32_t block  = boxes.empty() ? box : boxes[box];
+        if (const Clump* clump = clumpAt(block)) {
+            const glm::dvec3 nearest = glm::clamp(centre, clump->low, clump->high);
+            if (squaredDistance(nearest, centre) * (1 - kRound) <= bound())
+                clump->index->addNearest(centre, k, whole, first + block * kBlockPoints, best);
+        } else {
+            float distance2[kBlockPoints];
+            for (auto near = filter.measure(blocks[block], shell, distance2); near != 0; near &= near - 1)
+                add(std::size_t(block) * kBlockPoints + std::size_t(std::countr_zero(near)));
+        }
+        reach  = std::min(reach, std::sqrt(bound()) * frame.scale);
+        shell  = sphere.shell(reach);
+        search = std::min(search, sphere.searchRadius(reach));
+    });
+}
 
 void NeighbourIndex::Impl::gather(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
                                   std::vector<std::uint32_t>& found) const
@@ -430,15 +655,19 @@ void NeighbourIndex::Impl::gather(const FloatSphere& sphere, const glm::dvec3& c
     handOver();
 }
 
-void NeighbourIndex::Impl::gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
-                                       std::vector<std::uint32_t>& found) const
+bool NeighbourIndex::Impl::gatherRanks(const FloatSphere& sphere, const glm::dvec3& centre, double radius,
+                                       std::size_t most, std::vector<std::uint32_t>& found) const
 {
-    constexpr std::uint32_t kWhole  = 0xffffffff;
-    const Shell             shell   = sphere.shell(radius * frame.scale);
-    const double            radius2 = radius * radius;
-    const auto              surely  = [&](float distance2) { return distance2 <= shell.inner2; };
-    tree.query(sphere.centre(), sphere.searchRadius(radius * frame.scale),
-               [&](std::uint32_t block, float&) { found.push_back(block); });
+    constexpr std::size_t   kFewPoints = 4; // in a block of a ball, if it has very many of them
+    constexpr std::uint32_t kWhole     = 0xffffffff;
+    const Shell             shell      = sphere.shell(radius * frame.scale);
+    const double            radius2    = radius * radius;
+    const auto              surely     = [&](float distance2) { return distance2 <= shell.inner2; };
+    tree.query(sphere.centre(), sphere.searchRadius(radius * frame.scale), [&](std::uint32_t block, float& search) {
+        found.push_back(block);
+        if (found.size() > most / kFewPoints) search = 0;
+    });
+    if (found.size() > most / kFewPoints) return false;
     std::sort(found.begin(), found.end());
     // The blocks wait at the end of the room for all of their points: those of one never reach the next.
     const std::size_t blocksNear = found.size(), from = blocksNear * (kBlockPoints - 1);
@@ -460,6 +689,7 @@ void NeighbourIndex::Impl::gatherRanks(const FloatSphere& sphere, const glm::dve
         }
     }
     found.resize(std::size_t(to - found.data()));
+    return found.size() <= most;
 }
 
 bool NeighbourIndex::Impl::findCandidates(const FloatSphere& sphere, double start, std::size_t k,
@@ -494,9 +724,7 @@ NeighbourIndex::NeighbourIndex(std::span<const glm::dvec3> positions)
     const auto bad = std::find_if_not(positions.begin(), positions.end(), finite);
     PALP_EXPECT(bad == positions.end(), "point " + std::to_string(bad - positions.begin()) + " is not finite");
 
-    const IndexFrame frame(positions);
-    impl_ = std::make_unique<Impl>(positions, frame, mortonOrder(positions, frame));
-
+    impl_          = Impl::make(positions, BoxTree::newDevice());
     impl_->spacing = medianSixthDistance() * std::sqrt(std::numbers::pi / 6);
 }
 
@@ -529,9 +757,11 @@ void NeighbourIndex::gather(const glm::dvec3& centre, double radius, std::vector
 {
     found.clear();
     const Impl& index = *impl_;
-    if (const auto sphere = index.sphereFor(centre, radius))
-        index.gather(*sphere, centre, radius, found);
-    else
+    if (const auto sphere = index.sphereFor(centre, radius)) {
+        if (index.clumps.empty()) return index.gather(*sphere, centre, radius, found);
+        index.appendSlots(centre, radius, 0, SIZE_MAX, found);
+        for (std::uint32_t& slot : found) slot = index.pointAt(slot);
+    } else
         index.eachWithin(centre, radius, [&](std::size_t slot) { found.push_back(index.pointAt(slot)); });
 }
 
@@ -554,7 +784,9 @@ std::vector<Neighbour> NeighbourIndex::nearest(const glm::dvec3& centre, std::si
         found.push_back({index.pointAt(slot), squaredDistance(index.exact[slot], centre)}); // squared until sorted
     };
     const glm::dvec3 place = index.frame.to(centre);
-    if (index.frame.searchable(place)) {
+    if (!index.clumps.empty()) {
+        index.addNearest(centre, k, index, 0, found);
+    } else if (index.frame.searchable(place)) {
         const FloatSphere sphere(place);
         Candidates        candidates(k);
         const double      everything = 2 * (largest(place) + index.frame.reach); // sqrt(3) would do
@@ -610,12 +842,20 @@ std::span<const glm::dvec3> NeighbourIndex::positionsByRank() const noexcept
 
 void NeighbourIndex::gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const
 {
+    (void)gatherRanks(centre, radius, SIZE_MAX, found);
+}
+
+bool NeighbourIndex::gatherRanks(const glm::dvec3& centre, double radius, std::size_t most,
+                                 std::vector<std::uint32_t>& found) const
+{
     found.clear();
-    const Impl& index = *impl_;
-    if (const auto sphere = index.sphereFor(centre, radius))
-        index.gatherRanks(*sphere, centre, radius, found);
-    else
-        index.eachWithin(centre, radius, [&](std::size_t rank) { found.push_back(std::uint32_t(rank)); });
+    const Impl& index  = *impl_;
+    const auto  sphere = index.sphereFor(centre, radius);
+    if (sphere && index.clumps.empty()) return index.gatherRanks(*sphere, centre, radius, most, found);
+    index.appendSlots(centre, radius, 0, most, found);
+    if (found.size() > most) return false;
+    if (!std::ranges::is_sorted(found)) std::ranges::sort(found);
+    return true;
 }
 
 void NeighbourIndex::pointsOf(std::span<const std::uint32_t> ranks, std::vector<std::uint32_t>& points) const

@@ -17,7 +17,8 @@ struct Neighbour {
 /// Searches fixed positions by radius and for the nearest points.
 ///
 /// It is an Embree bounding volume hierarchy over blocks of 32 Morton-ordered points, each block one user primitive
-/// that is filtered with vector instructions. Answers are those of a brute-force search in double precision, exactly: a
+/// that is filtered with vector instructions. Very many points so close together that floats do not tell them apart
+/// have such an index of their own. Answers are those of a brute-force search in double precision, exactly: a
 /// point is within the radius if the squared distance, in doubles, is at most the squared radius.
 /// \thread  const calls from any number of threads at once
 class NeighbourIndex {
@@ -55,6 +56,11 @@ public:
     /// Does what gather() does, with ranks in place of points, in rising order: what is read of hundreds of thousands of
     /// points then comes from memory in order too, and what is taken of some of them hangs on no tree.
     void gatherRanks(const glm::dvec3& centre, double radius, std::vector<std::uint32_t>& found) const;
+
+    /// Does the same if there are no more than `most`; else the time does not grow with how many there are.
+    /// \return  whether `found` is all of them; false also where they lie in more than a quarter as many blocks
+    [[nodiscard]] bool gatherRanks(const glm::dvec3& centre, double radius, std::size_t most,
+                                   std::vector<std::uint32_t>& found) const;
 
     /// Replaces `points` by those that have the ranks.
     void pointsOf(std::span<const std::uint32_t> ranks, std::vector<std::uint32_t>& points) const;

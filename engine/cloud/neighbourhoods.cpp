@@ -2,9 +2,14 @@
 
 namespace palp {
 
-void Neighbourhoods::search(const glm::dvec3& middle, double reach)
+bool Neighbourhoods::search(const glm::dvec3& middle, double reach)
 {
-    index_.gatherRanks(middle, reach * (1 + 1e-9), found_);
+    constexpr std::size_t kMost = 16'384; // beside a step in density of eight spacings to one it finds some 9000
+    return index_.gatherRanks(middle, reach * (1 + 1e-9), kMost, found_);
+}
+
+void Neighbourhoods::takeFound(const glm::dvec3& middle)
+{
     for (std::vector<double>* v : {&x_, &y_, &z_, &distance2_}) v->resize(found_.size());
     for (std::size_t n = 0; n < found_.size(); ++n) {
         const glm::dvec3 d = positions_[found_[n]] - middle;

@@ -65,7 +65,12 @@ public:
                 if (away > kApart * first || own > kUnlike * first) break;
                 reach = std::max(reach, away + own);
             }
-            search(middle, reach);
+            if (!search(middle, reach)) { // of a single point the ball is the smallest
+                end   = begin + 1;
+                reach = first;
+                index_.gatherRanks(middle, reach * (1 + 1e-9), found_);
+            }
+            takeFound(middle);
             for (std::uint32_t k = begin; k < end; ++k) {
                 // What is out of reach of the search is out of the radius too, unless a visit has enlarged it.
                 const glm::dvec3 place = positions_[k] - middle;
@@ -77,8 +82,10 @@ public:
     }
 
 private:
-    void search(const glm::dvec3& middle, double reach);
-    void keepNear(const glm::dvec3& place, double radius);
+    /// Finds the points of a search, unless they are so many that it must have reached into a part far denser.
+    [[nodiscard]] bool search(const glm::dvec3& middle, double reach);
+    void               takeFound(const glm::dvec3& middle);
+    void               keepNear(const glm::dvec3& place, double radius);
 
     const NeighbourIndex&       index_;
     std::span<const glm::dvec3> positions_; ///< [m] by rank

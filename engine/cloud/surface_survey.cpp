@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -76,6 +77,10 @@ constexpr std::size_t kTogether   = 8;   ///< points along the curve that share 
 constexpr double      kNearMiddle = 0.5; ///< [radius] within which they do: where the curve jumps, the next is far away
 constexpr std::size_t kMostOfBall = 512; ///< points of a wide ball that are looked at
 
+/// A ball that holds more points than this is not searched for noise: it has reached into a part that is far denser, as
+/// the balls of many points may do. The widest one holds 3200 on a surface, and 31'000 in a volume.
+constexpr std::size_t kMostInNoise = std::size_t(1) << 16;
+
 } // namespace
 
 /// The survey of some runs of a cloud, all by rank: each thread has its own.
@@ -97,10 +102,10 @@ public:
     void settleNoise(const RankRun& run, std::span<const float> raw);
 
 private:
-    LocalShape shapeWithin(std::uint32_t point, double radius);
-    LocalShape faceWithin(std::uint32_t point, double radius);
-    void       takeAway(std::uint32_t point);
-    LocalShape widened(std::uint32_t point, LocalShape shape);
+    LocalShape                shapeWithin(std::uint32_t point, double radius);
+    std::optional<LocalShape> faceWithin(std::uint32_t point, double radius);
+    void                      takeAway(std::uint32_t point);
+    LocalShape                widened(std::uint32_t point, LocalShape shape);
 
     /// The shape of a wide ball, as far as it is one.
     struct WideShape {
@@ -135,10 +140,10 @@ LocalShape SurfaceSurvey::Measuring::shapeWithin(std::uint32_t point, double rad
 }
 
 /// Does the same for the face of a thin body on which the point lies: without the points whose given normals are
-/// opposite, or by the heights of the points.
-LocalShape SurfaceSurvey::Measuring::faceWithin(std::uint32_t point, double radius)
+/// opposite, or by the heights of the points. Nothing if the ball holds too many points.
+std::optional<LocalShape> SurfaceSurvey::Measuring::faceWithin(std::uint32_t point, double radius)
 {
-    index_.gatherRanks(positions_[point], radius, found_);
+    if (!index_.gatherRanks(positions_[point], radius, kMostInNoise, found_)) return {};
     if (!given_.empty()) {
         const glm::vec3 side = given_[points_[point]];
         std::erase_if(found_, [&](std::uint32_t other) { return glm::dot(given_[points_[other]], side) < 0; });
@@ -232,11 +237,15 @@ void SurfaceSurvey::Measuring::adoptSides(const RankRun& run, std::span<const st
 SurfaceSurvey::Measuring::WideShape SurfaceSurvey::Measuring::settledShape(std::uint32_t point)
 {
     const double    spacing = survey_.spacings_[point];
-    LocalShape      narrow  = faceWithin(point, kReach * spacing);
-    int             settled = 0;
     const WideShape none{{}, point, 2 * kReach * spacing};
+    const auto      first = faceWithin(point, kReach * spacing);
+    if (!first) return none;
+    LocalShape narrow  = *first;
+    int        settled = 0;
     for (double radius = 2 * kReach * spacing; radius <= kWidest * spacing; radius *= 2) {
-        const LocalShape wide = faceWithin(point, radius);
+        const auto found = faceWithin(point, radius);
+        if (!found) return none;
+        const LocalShape wide = *found;
         const double     most = wide.apart > 0 ? kSettledOnFace : kSettled;
         settled               = wide.residual < most * narrow.residual ? settled + 1 : 0;
         if (settled > 0 && wide.tails < kTwoFaces) return none;

@@ -125,6 +125,21 @@ TEST(LocalSpacing, WhatIsCoarseOnPurposeIsNoStray)
         }
 }
 
+TEST(LocalSpacing, OfAFarDenserPartIsItsOwn)
+{
+    Sheet        sheet(Layout::random, 3);
+    Points       points = sheet.whole();
+    const double finer  = 1e-6;
+    const auto   sparse = points.size();
+    for (const glm::dvec3& p : sheet.whole()) points.push_back(finer * p + glm::dvec3(0.3, 0.2, 5));
+    const std::vector<double> spacings = spacingsOf(points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double own = i < sparse ? 1 : finer;
+        EXPECT_GT(spacings[i], 0.35 * own);
+        EXPECT_LT(spacings[i], 1.8 * own);
+    }
+}
+
 TEST(LocalSpacing, NeedsASurface)
 {
     EXPECT_THROW((void)spacingsOf(Points(100, glm::dvec3(1, 2, 3))), Error);

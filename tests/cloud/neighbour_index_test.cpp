@@ -60,8 +60,11 @@ void expectGather(const NeighbourIndex& index, const Points& points, const glm::
     EXPECT_EQ(sorted(index.gather(centre, radius)), bruteGather(points, centre, radius))
         << "radius " << radius << " at " << centre.x << ", " << centre.y << ", " << centre.z;
 
-    std::vector<std::uint32_t> rising, inOrder;
+    std::vector<std::uint32_t> rising, inOrder, few;
     index.gatherRanks(centre, radius, rising);
+    EXPECT_TRUE(index.gatherRanks(centre, radius, 4 * points.size(), few)) << "blocks count as four points";
+    EXPECT_EQ(few, rising);
+    EXPECT_TRUE(rising.empty() || !index.gatherRanks(centre, radius, rising.size() - 1, few));
     EXPECT_TRUE(std::is_sorted(rising.begin(), rising.end()));
     index.pointsOf(rising, inOrder);
     std::sort(inOrder.begin(), inOrder.end());
@@ -223,6 +226,49 @@ TEST(NeighbourIndex, ClumpsTooFineForFloatsAreResolved)
             for (const std::size_t k : {1, 7, 40, 890, 1100}) expectNearest(index, points, points[i], k);
         }
     }
+}
+
+/// Points in spirals: of each sixty, each is half as far from the origin as the one before.
+Points shrinkingRings(std::size_t count)
+{
+    Points points;
+    for (std::size_t i = 0; i < count; ++i)
+        points.push_back(std::ldexp(1.0, -int(i % 60)) * glm::dvec3(std::cos(double(i)), std::sin(double(i)), 0));
+    return points;
+}
+
+TEST(NeighbourIndex, ClumpsWithinClumpsAnswerAsBruteForce)
+{
+    Points points = shrinkingRings(3000);
+    for (const double size : {1.0, 1e-3, 1e-7, 1e-12, 1e-16}) expectBruteForceAnswers(points, size);
+
+    // A clump that is a part of another, a place with very many points, and one far off with another clump of strays.
+    points = randomVolume(1000, 1.0, 26);
+    for (const glm::dvec3& p : randomVolume(1000, 1e-8, 27)) points.push_back(0.4 + p);
+    for (const glm::dvec3& p : randomVolume(1000, 1e-15, 28)) points.push_back(0.4 + 3e-9 + p);
+    points.resize(points.size() + 500, glm::dvec3(0.4 + 1e-9));
+    for (const glm::dvec3& p : randomVolume(300, 1e-5, 29)) points.push_back(glm::dvec3(500, -300, 0) + p);
+    for (const double size : {1.0, 1e-8, 1e-15}) {
+        expectBruteForceAnswers(points, size);
+        const NeighbourIndex index(points);
+        for (const glm::dvec3& centre : {points[1500], points[2500], points[3100], points[3600]})
+            for (const double share : {0.1, 0.5, 2.0}) {
+                expectGather(index, points, centre, share * size);
+                expectGather(index, points, centre + share * size, size);
+                for (const std::size_t k : {1, 7, 400, 1200}) expectNearest(index, points, centre + share * size, k);
+            }
+    }
+}
+
+TEST(NeighbourIndex, ABallInAClumpIsNotSearchedThroughAllOfIt)
+{
+    Points points = randomVolume(10'000, 1e-6, 30);
+    for (const glm::dvec3& p : randomVolume(10'000, 1e-6, 31)) points.push_back(p + glm::dvec3(1, 0, 0));
+    const NeighbourIndex       index(points);
+    std::vector<std::uint32_t> near;
+    for (std::size_t i = 0; i < points.size(); i += 500)
+        EXPECT_TRUE(index.gatherRanks(points[i], 3 * index.spacing(), 400, near))
+            << "it holds " << near.size() << " of the points that have been looked at, 60 on average";
 }
 
 TEST(NeighbourIndex, CloudsOfExtremeSizesAnswerAsBruteForce)

@@ -224,6 +224,24 @@ TEST(SurfaceSurvey, AStrayHasTheSpacingOfTheOthers)
     }
 }
 
+TEST(SurfaceSurvey, ABallOfThreeSpacingsHoldsNotALargePartOfAnUnevenCloud)
+{
+    // Whatever asks what is near each point asks for such balls: where they hold a share of all points, the time of all
+    // that grows with the square.
+    Points points; // rings, each half as wide as the one before
+    for (int i = 0; i < 6000; ++i)
+        points.push_back(std::ldexp(1.0, -(i % 60)) * glm::dvec3(std::cos(double(i)), std::sin(double(i)), 0));
+    const NeighbourIndex       index(points);
+    const SurfaceSurvey        survey(index);
+    std::vector<std::uint32_t> near;
+    double                     mean = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        index.gatherRanks(points[i], 3 * survey.spacing(i), near);
+        mean += double(near.size()) / double(points.size());
+    }
+    EXPECT_LT(mean, 100) << "a third of a ring; a thousand if the inner rings have no spacing of their own";
+}
+
 TEST(SurfaceSurvey, WhatIsNoSurfaceIsSaidByItsUsers)
 {
     const Points points(100, glm::dvec3(1, 2, 3));

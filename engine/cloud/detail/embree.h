@@ -41,12 +41,32 @@ public:
         glm::vec3 high{};
     };
 
-    /// \throws Error if Embree does not start or runs out of memory
-    explicit BoxTree(const std::vector<Box>& boxes) : device_(rtcNewDevice(kConfiguration))
+private:
+    struct Release {
+        void operator()(RTCDevice device) const noexcept { rtcReleaseDevice(device); }
+        void operator()(RTCScene scene) const noexcept { rtcReleaseScene(scene); }
+        void operator()(RTCGeometry geometry) const noexcept { rtcReleaseGeometry(geometry); }
+    };
+
+public:
+    /// What trees that belong together are made on: to start one takes longer than to build a small tree.
+    using Device = std::shared_ptr<std::remove_pointer_t<RTCDevice>>;
+
+    /// \throws Error if Embree does not start
+    [[nodiscard]] static Device newDevice()
     {
-        if (!device_)
+        Device device(rtcNewDevice(kConfiguration), [](RTCDevice d) {
+            if (d) rtcReleaseDevice(d);
+        });
+        if (!device)
             throw Error("Embree does not start (error " + std::to_string(rtcGetDeviceError(nullptr)) +
                         "); is there enough memory?");
+        return device;
+    }
+
+    /// \throws Error if Embree runs out of memory
+    BoxTree(Device device, const std::vector<Box>& boxes) : device_(std::move(device))
+    {
         scene_.reset(rtcNewScene(device_.get()));
         const Geometry geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
         rtcSetGeometryUserPrimitiveCount(geometry.get(), static_cast<unsigned>(boxes.size()));
@@ -118,15 +138,10 @@ private:
         args->bounds_o->upper_z = box.high.z;
     }
 
-    struct Release {
-        void operator()(RTCDevice device) const noexcept { rtcReleaseDevice(device); }
-        void operator()(RTCScene scene) const noexcept { rtcReleaseScene(scene); }
-        void operator()(RTCGeometry geometry) const noexcept { rtcReleaseGeometry(geometry); }
-    };
     using Geometry = std::unique_ptr<std::remove_pointer_t<RTCGeometry>, Release>;
 
-    std::unique_ptr<std::remove_pointer_t<RTCDevice>, Release> device_;
-    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release>  scene_;
+    Device                                                    device_;
+    std::unique_ptr<std::remove_pointer_t<RTCScene>, Release> scene_;
 };
 
 } // namespace palp
