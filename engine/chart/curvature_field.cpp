@@ -293,7 +293,7 @@ int sideFor(const PatchWindow& window, double radius)
 {
     const double size = std::max(window.grid.sizeX(), window.grid.sizeZ());
     if (size <= (kLattice - 1) * radius) return kLattice;
-    return std::min(int(std::ceil(2 * size / radius)) + 1, kMostLattice);
+    return int(std::min(std::ceil(2 * size / radius) + 1, double(kMostLattice))); // a ratio may be no int
 }
 
 constexpr double kRung = 1e-3, kRungs = 1.3; ///< the first radius [m]; their ratio [1]
