@@ -36,9 +36,10 @@ inline constexpr double kMostFitBias = 0.05;
 [[nodiscard]] double facetWidth(const SurfaceMesh& mesh, const glm::dvec3& place, double reach);
 
 /// Returns, in sentences, why the curvature that a patch bent with may be read wrong: points that are too far apart,
-/// what changes within its fits, or facets that are wider than them. Of an object with a border nearly as wide as itself
-/// it says that a window about the contact does not know it. Of a plate it says that the surface is curved where the fitted sphere, of which
-/// warnings() knows, is not: a saddle's has no curvature, and a tube's half of it. Empty is good.
+/// what changes within its fits, or facets that are wider than them. Of an object with a border nearly as wide as it is
+/// long it says that a window about the contact does not know it. Of a plate it says that the surface is curved where
+/// the fitted sphere, of which warnings() knows, is not: a saddle's has no curvature, and a tube's half of it. Empty is
+/// good.
 ///
 /// Measured on spheres and cylinders of facets: fits as wide as 1.15 facets and more are right to 5 %, of 0.9 off by
 /// -12 to 3 %, of 0.7 by -3 to 35 %, and of half of one by -73 to 63 %: they find a curvature of none on the facets.

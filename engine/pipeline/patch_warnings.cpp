@@ -76,18 +76,20 @@ std::string tooDeep(double sag, double limit)
                   "support range");
 }
 
+constexpr double kMostSagOfWhole = 0.1, kMostSagOfBowl = 0.2; // of what is held at one place [1]
+
 /// Says that an object that bends as a whole is deep. By CalculiX: cups of 100 x 40 mm that are held at one end and sag
 /// 15 and 7 % of their length are felt 10 and 2 % too stiff at their tips, caps that are held on a segment and sag 11
 /// and 19 % 5 and 11 % too soft, as is a trough at a far corner that sags 45 % and is held along one side, by 13 %.
 /// Strips that curve away from where they are held, in part or to and fro, gutters, dishes, and domes that are held all
 /// round are within 5 %, and within 12 where curvature changes within the radius of its fits.
 ///
-/// Bowls that are held at a stem alone, by a shell theory of revolution, h 1 mm, 40 mm along the surface from the bottom
-/// to the rim (angles of 20, 35, 50, 70 and 90 degrees there): 2, 8, 16, 39 and 63 % too soft 5 mm from the rim; 20 mm
-/// from it 1, 6, 12, 26 and 47.
-/// \param bowl  it bulges both ways
-constexpr double kMostSagOfWhole = 0.1, kMostSagOfBowl = 0.2; // of what is held at one place [1]
-std::string      tooDeepAsAWhole(double sag, bool oneHold, bool bowl)
+/// Bowls that are held at a stem alone, by a shell theory of revolution, h 1 mm, 40 mm along the surface from bottom to
+/// rim (angles of 20, 35, 50, 70 and 90 degrees there): 2, 8, 16, 39 and 63 % too soft 5 mm from the rim, and 1, 6, 12,
+/// 26 and 47 at 20 mm.
+/// \param oneHold  what holds it is in one place
+/// \param bowl     it bulges both ways
+std::string tooDeepAsAWhole(double sag, bool oneHold, bool bowl)
 {
     return "the object sags " + withOneDecimal(100 * sag) +
            " % of its width, and the theory of shallow shells takes it for nearly level: " +
