@@ -5,7 +5,6 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <numbers>
 #include <utility>
 
 #include <glm/common.hpp>
@@ -55,12 +54,7 @@ double openWidth(const SoftObject& object)
     constexpr double kOpen   = 0.5; // [1]
     const auto       borders = cloudQuality(object).borderWidths;
     if (borders.empty()) return 0;
-    glm::dvec3 low = object.positions()[0], high = low;
-    for (const glm::dvec3& place : object.positions()) {
-        low  = glm::min(low, place);
-        high = glm::max(high, place);
-    }
-    const glm::dvec3 size = high - low;
+    const glm::dvec3 size = object.cloud().bounds().high - object.cloud().bounds().low;
     return borders.front() >= kOpen * std::max({size.x, size.y, size.z}) ? borders.front() : 0;
 }
 
@@ -70,9 +64,8 @@ double openWidth(const SoftObject& object)
 std::string openObject(double width)
 {
     return "the object is open, with a border " + formatQuantity(width, "m") +
-           " wide, and is taken to go on beyond the patch window: unless that border is held all around, it may be "
-           "felt "
-           "several times too stiff, and the support range does not tell; set window object and what holds it";
+           " wide, and is taken to go on beyond the patch window: unless that border is held all around, it may "
+           "be felt several times too stiff, and the support range does not tell; set window object and what holds it";
 }
 
 using Corner = std::uint32_t;
@@ -121,10 +114,8 @@ double changeBias(const Patch& patch)
     const PlateGrid&      grid  = patch.plate.grid;
     const auto [i, j]           = nodeAtContact(patch);
     const double x = field.x(i, j), z = field.z(i, j), xz = field.xz(i, j);
-    const double turned = 0.5 * std::atan2(2 * xz, x - z); // to the axis of the greater curvature
-    const bool   other  = std::abs(x + z - std::hypot(x - z, 2 * xz)) > std::abs(x + z + std::hypot(x - z, 2 * xz));
-    const double angle  = other ? turned + std::numbers::pi / 2 : turned;
-    const double c = std::cos(angle), s = std::sin(angle);
+    const double sign  = x + z < 0 ? -1 : 1; // of the curvature that is larger by size
+    const double angle = 0.5 * std::atan2(sign * 2 * xz, sign * (x - z)), c = std::cos(angle), s = std::sin(angle);
     const auto   along = [&](int m, int n) {
         return c * c * field.x(m, n) + s * s * field.z(m, n) + 2 * c * s * field.xz(m, n);
     };
@@ -185,7 +176,7 @@ std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& 
     if (bias > kMostFitBias) said.push_back(onSparse(patch.spacing, larger, bias));
     if (bias < -kMostFitBias) said.push_back(onChanging(radius, -bias));
     if (settings.windowOf != WindowOf::object && settings.foundation == 0 && smaller / larger > kOneWay)
-        if (const double width = openWidth(object); width > 0) said.push_back(openObject(width));
+        if (const double width = openWidth(usedOf(patch, object)); width > 0) said.push_back(openObject(width));
     if (faceted)
         said.push_back(
             "the facets of the mesh are " + formatQuantity(facet, "m") + " wide and its curvature is fitted within " +

@@ -25,7 +25,7 @@ inline constexpr double kMostFitBias = 0.05;
 /// within their radius [1]; below 0 too strong, because it is least there; 0 where there is little of it.
 ///
 /// Of waves cos(q x), of which a fit within r reads 9, 16, 37 and 51 % too little at q r of 1.0, 1.3, 2.0 and 2.7 (1.5
-/// mm thick and 16 mm long, 1 mm and 24 mm, points 0.5 and 1 mm apart, with and without noise), it is 0.115 times what
+/// mm high and 16 mm long, 1 mm and 24 mm, points 0.5 and 1 mm apart, with and without noise), it is 0.115 times what
 /// two places r to either side along that curvature have less of it than the middle, over it: 10, 17, 33 and 44 %. A
 /// weaker reading is weaker everywhere, so that this share does not feel it.
 [[nodiscard]] double changeBias(const Patch& patch);

@@ -204,15 +204,22 @@ TEST(TickStream, OutletsThatAreNotThereAreRefused)
     EXPECT_EQ(parseUdpAddress("udp:80", "x", "127.0.0.1").text(), "udp:127.0.0.1:80");
 }
 
+/// A session that is recorded and streamed, with what gets both.
+struct Tapped {
+    TemporaryFolder folder{};
+    Receiver        receiver{};
+    TickStream      stream{openOutlet(receiver.address())};
+    Recording       recording{folder / "run", someInfo()};
+    SessionTap      tap{&recording, {&stream}};
+
+    Tapped() { tap.begin(std::chrono::steady_clock::now()); }
+};
+
 TEST(SessionTap, MarkersGetTheTimeOfTheNewestTickEverywhere)
 {
-    const TemporaryFolder folder;
-    const Receiver        receiver;
-    TickStream            stream(openOutlet(receiver.address()));
-    Recording             recording(folder / "run", someInfo());
-    SessionTap            tap(&recording, {&stream});
+    Tapped tapped;
+    auto& [folder, receiver, stream, recording, tap] = tapped;
 
-    tap.begin(std::chrono::steady_clock::now());
     tap.push(recordNumber(7));
     tap.mark("one\n");
     std::string marker;
@@ -233,13 +240,9 @@ TEST(SessionTap, MarkersGetTheTimeOfTheNewestTickEverywhere)
 
 TEST(SessionTap, MarkersThatDidNotComeAreLostEverywhere)
 {
-    const TemporaryFolder folder;
-    const Receiver        receiver;
-    TickStream            stream(openOutlet(receiver.address()));
-    Recording             recording(folder / "run", someInfo());
-    SessionTap            tap(&recording, {&stream});
+    Tapped tapped;
+    auto& [folder, receiver, stream, recording, tap] = tapped;
 
-    tap.begin(std::chrono::steady_clock::now());
     tap.lose(4);
     tap.mark("one");
     const std::string marker = receiver.next();
