@@ -164,9 +164,7 @@ TEST(CurvatureDoubt, AnOpenBowlIsSaidToBeOpenAndABallOrATubeIsNot)
     const SoftObject bowl = bodyOf(std::move(half)), pierced = bodyOf(std::move(most));
     const auto       isOpen = [](const SoftObject& object, const PatchSettings& settings) {
         for (const std::string& line : curvatureDoubts(object, touched(object), settings))
-            if (line.find("the object is open, with a border 39") != std::string::npos ||
-                line.find("the object is open, with a border 40") != std::string::npos)
-                return true;
+            if (line.find("the object is open, with a border ") != std::string::npos) return true;
         return false;
     };
     EXPECT_TRUE(isOpen(bowl, kShell));
