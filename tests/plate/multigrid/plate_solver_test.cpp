@@ -218,18 +218,14 @@ TEST(PlateSolver, WhyAProcessorGaveUpIsNotAnErrorBelowTheTolerance)
     if (processorOfTests() == compute::kHostProcessor) GTEST_SKIP() << "the host goes on with such plates";
     compute::ContextSettings settings = settingsOfTests();
     settings.float64                  = false;
-    PlateSolver solver(settings);
-    Plate       plate = plateOf(32, 10);
-    plate.edges       = {Edge::free, Edge::free, Edge::free, Edge::free};
-    for (const double foundation : {3.0, 1e-2, 1e-4})
-        for (const double tolerance : {1e-4, 1e-2}) {
-            plate.foundation = foundation;
-            (void)solver.solve(plate, pointLoad(plate.grid, 1, 0.5, 0.5), tolerance);
-            const std::size_t at = solver.note().find("an error of about ");
-            if (at == std::string::npos) continue;
-            EXPECT_GT(std::stod(solver.note().substr(at + std::string("an error of about ").size())), tolerance)
-                << solver.note();
-        }
+    Plate plate                       = plateOf(32, 10);
+    plate.edges                       = {Edge::free, Edge::free, Edge::free, Edge::free};
+    plate.foundation                  = 0.1;
+    for (const double tolerance : {1e-4, 1e-2, 0.1}) {
+        PlateSolver solver(settings);
+        (void)solver.solve(plate, footprintLoad(plate.grid, 1, 0.5, 0.5, 0.2), tolerance);
+        EXPECT_NE(solver.note().find("held too softly"), std::string::npos) << tolerance << ": " << solver.note();
+    }
 }
 
 TEST(PlateSolver, WhatTheDeviceCannotConvergeTheReferenceSolves)
