@@ -806,7 +806,9 @@ TEST_F(MultigridPlate, TheErrorsEnergyIsAtMostTwoAndAHalfTimesTheEstimateWhateve
                         const auto           found    = solver.solveFootprints({&footprint, 1});
                         const double         energy   = 1 - found.of[0].work / truth; // of the error, exactly
                         const double         estimate = *found.report.errorEstimate;
-                        EXPECT_LT(energy, 2.5 * 2.5 * estimate * estimate + 3e-7)
+                        // What a processor without doubles rounds off is no part of the estimate: the solver tells it.
+                        const double rounded = double64 ? 0 : solver.rounding();
+                        EXPECT_LT(energy, 2.5 * 2.5 * estimate * estimate + 3e-7 + rounded)
                             << "disc of " << contrast << ", " << cells << " cells, load at " << x << ", " << tolerance
                             << ": " << *found.report.iterations << " steps; 3e-7: rigidities are rounded to floats";
                         EXPECT_GE(*found.report.iterations, 2) << "a first step is not judged at jumps";

@@ -128,7 +128,7 @@ holds '3 of 3 trials'
 good 'its sessions are sessions' replay study/P01/trial_001 --compare
 # Killed at once: between two trials, while the keyboard is waited for.
 mkfifo keys
-"$palpate" study plan.json --participant P02 --out study --clock virtual <keys >out.txt 2>err.txt &
+"$palpate" study plan.json --participant P02 --out study --clock virtual <keys >first.txt 2>first_errors.txt &
 process=$!
 exec 3>keys
 printf '\n2\n' >&3
