@@ -4,7 +4,7 @@ set -u
 cd "$1" || exit 1
 
 # The layers from the bottom up. A file may include its own folder and those before it; subfolders count as their folder.
-layers='core compute cloud contact chart plate force pipeline session perception capi tools/plot tools/render tools/gui tools/bench tools/paper tools/study tools/fit tools/cli'
+layers='core compute cloud contact chart plate body force pipeline session perception capi tools/plot tools/render tools/gui tools/bench tools/paper tools/study tools/fit tools/cli'
 # layer_of prints the layer of a path below engine/, level_of its place in the list.
 layer_of() {
     case $1 in

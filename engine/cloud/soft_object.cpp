@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/cloud/body_note.h"
 #include "engine/cloud/coarse_object.h"
 #include "engine/cloud/curvature_notes.h"
 #include "engine/cloud/surface_links.h"
@@ -46,6 +47,7 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
       survey_(std::make_shared<const SurfaceSurvey>(
           *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
       links_(std::make_shared<SurfaceLinks>(index_, survey_)), curvatureNotes_(std::make_shared<CurvatureNotes>()),
+      bodyNote_(std::make_shared<BodyNote>()),
       foundationShape_(std::make_shared<const std::vector<double>>()),
       stiffening_(std::make_shared<const std::vector<double>>()), held_(std::make_shared<const std::vector<double>>()),
       material_(material)
@@ -58,6 +60,7 @@ SoftObject SoftObject::repainted(std::vector<double> stiffness) const
     SoftObject painted = *this;
     painted.cloud_     = PointCloud(cloud_, std::move(stiffness));
     painted.coarse_    = coarseShapes();
+    painted.bodyNote_  = std::make_shared<BodyNote>();
     return painted;
 }
 
@@ -73,6 +76,7 @@ SoftObject SoftObject::withMaterial(const Material& material) const
     SoftObject other = *this;
     other.material_  = material;
     other.coarse_    = coarseShapes();
+    other.bodyNote_  = std::make_shared<BodyNote>();
     if (material.thickness != material_.thickness) // the sheet's faces are told apart by it
         other.curvatureNotes_ = std::make_shared<CurvatureNotes>();
     return other;
@@ -107,6 +111,7 @@ SoftObject SoftObject::withHeld(std::vector<double> share) const
     SoftObject other = *this;
     other.held_      = std::make_shared<const std::vector<double>>(std::move(share));
     other.coarse_    = coarseShapes();
+    other.bodyNote_  = std::make_shared<BodyNote>();
     return other;
 }
 

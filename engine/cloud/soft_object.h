@@ -14,6 +14,7 @@
 namespace palp {
 
 class CoarseObject;
+struct BodyNote;
 struct CurvatureNotes;
 class SurfaceLinks;
 
@@ -80,6 +81,9 @@ public:
     /// same points share it.
     [[nodiscard]] SurfaceLinks& links() const noexcept { return *links_; }
 
+    /// Returns the place of what bodyShellOf() makes of the object.
+    [[nodiscard]] BodyNote& bodyNote() const noexcept { return *bodyNote_; }
+
     /// Returns what withFoundation() took [1]; empty: the foundation is the same everywhere.
     [[nodiscard]] std::span<const double> foundationShape() const noexcept { return *foundationShape_; }
 
@@ -113,6 +117,7 @@ private:
     std::shared_ptr<const SurfaceSurvey>         survey_;          ///< never null
     std::shared_ptr<SurfaceLinks>                links_;           ///< never null
     std::shared_ptr<CurvatureNotes>              curvatureNotes_;  ///< never null
+    std::shared_ptr<BodyNote>                    bodyNote_;        ///< never null
     std::shared_ptr<const std::vector<double>>   foundationShape_; ///< never null
     std::shared_ptr<const std::vector<double>>   stiffening_;      ///< [1/m] never null
     std::shared_ptr<const std::vector<double>>   held_;            ///< never null

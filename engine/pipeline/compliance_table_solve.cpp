@@ -151,7 +151,7 @@ MiddleSolution fillTable(FootprintSolution solved, const FootprintLattice& latti
     }
     addCurved(solved.responses, table);
     const FootprintResponse& middle = solved.responses[lattice.loads.size() / 2];
-    return {std::move(solved.whole), middle.work, givesWay(middle)};
+    return {std::move(solved.whole), middle.work, givesWay(middle), std::move(solved.stress)};
 }
 
 /// Returns ln c(e)/c(0) with its slopes in the window of a homogeneous shell of the mean rigidity and curvature.
@@ -331,10 +331,13 @@ MiddleSolution solveTable(const Plate& plate, double below, const FootprintLatti
 }
 
 MiddleSolution solveTable(const Shell& shell, double below, const FootprintLattice& lattice, PlateSolver& solver,
-                          double tolerance, ComplianceTable& table)
+                          double tolerance, ComplianceTable& table, Stresses stresses)
 {
+    // What stresses do along other displacements is of the first order in their error.
+    constexpr double  kStresses = 1e-3; // [1]
+    const double      drawn     = stresses == Stresses::none ? PlateSolver::kAsWorks : kStresses;
     FootprintSolution solved =
-        solver.solveFootprints(shell, lattice.loads, lattice.loads.size() / 2, tolerance, PlateSolver::kAsWorks);
+        solver.solveFootprints(shell, lattice.loads, lattice.loads.size() / 2, tolerance, drawn, stresses);
     const auto own = lattice.loads.size() > 1 && !lattice.wholeObject
                          ? windowOf(shell, below, lattice, solver, tolerance)
                          : ComplianceTable::Entries{};

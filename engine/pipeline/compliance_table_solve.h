@@ -97,6 +97,7 @@ struct MiddleSolution {
     PlateSolution solution;   ///< under 1 N
     double        compliance; ///< c there, of the shallow theory [m/N]
     double        curved = 1; ///< what c is of that, see givesWay() [1]
+    NodeField     stress{};   ///< Airy's function of a shell, where it was asked for [N m]
 };
 
 /// Does the same into a table that is there, so that who reads it needs no copy. Its sequence number, time and chart
@@ -108,7 +109,8 @@ struct MiddleSolution {
 /// Does the same on a shell. What the window does to footprints off its middle, and the phase of the grid, are those of
 /// a shell of the mean rigidity and curvature, to a step of 2 %, which is solved as well and kept with the lattice.
 [[nodiscard]] MiddleSolution solveTable(const Shell& shell, double below, const FootprintLattice& lattice,
-                                        PlateSolver& solver, double tolerance, ComplianceTable& table);
+                                        PlateSolver& solver, double tolerance, ComplianceTable& table,
+                                        Stresses stresses = Stresses::none);
 
 /// Returns the geometric mean of a rigidity under a footprint, weighted as the load is [N m]: that from which the
 /// stiffness of the contact follows, and exactly the rigidity where all nodes are alike.

@@ -14,6 +14,7 @@
 #include "engine/core/contract.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/detail/body_give.h"
+#include "engine/pipeline/detail/body_on_window.h"
 #include "engine/pipeline/detail/coarser_grid.h"
 #include "engine/pipeline/detail/contact_chart.h"
 #include "engine/pipeline/detail/grid_part.h"
@@ -380,6 +381,15 @@ void rigiditiesOf(const SoftObject& object, std::span<const std::uint32_t> point
     for (std::size_t k = 0; k < points.size(); ++k) rigidities[k] = stiffness[points[k]] * perUnit;
 }
 
+/// Takes the border back that a window has none of, which is cut from a body: all of it is sheet, and nothing is held.
+void fillWindow(Patch& patch)
+{
+    const bool isHeld = std::ranges::any_of(patch.held.values(), [](double share) { return share > 0; });
+    if (isHeld || std::ranges::any_of(patch.covered.values(), [](double share) { return share < 1; })) return;
+    patch.covered = patch.inside = {};
+    patch.beyond                 = 1;
+}
+
 /// \param ranks  of the points of the touched surface
 void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::uint32_t> ranks,
                   const PatchSettings& settings)
@@ -408,8 +418,9 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
 
     // Beyond an object's border there is next to nothing of what its nearest point has, and six cells away none.
     constexpr double kBeyond = 6;
+    const bool       ends  = settings.windowOf == WindowOf::object || settings.outside == Outside::body;
     const double     exact =
-        settings.windowOf == WindowOf::object ? kBeyond * cellOf(settings) : std::numeric_limits<double>::infinity();
+        ends ? kBeyond * cellOf(settings) : std::numeric_limits<double>::infinity();
     std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest,
                                                    patch.coarse ? Sampling::means : Sampling::places, exact);
     patch.nodesWithoutPoint          = resampled[0].nodesWithoutPoint;
@@ -420,7 +431,7 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     auto next = resampled.begin() + 1;
     if (isTissue) patch.plate.foundationShape = std::move((next++)->rigidity);
     patch.below = meanFoundation(patch.plate);
-    if (settings.windowOf == WindowOf::object) {
+    if (ends) {
         cutOut(patch, sparsest);
         findApart(patch, unitLoad(patch, settings));
     }
@@ -430,7 +441,9 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
         holdNodes(patch, held, resamplingWidth(finest, patch.window.grid.spacingX), settings.foundation,
                   unitLoad(patch, settings));
     }
-    if (settings.windowOf == WindowOf::object && settings.theory == Theory::shell) findSheared(patch);
+    patch.isCut = settings.outside == Outside::body;
+    if (patch.isCut) fillWindow(patch);
+    if (settings.theory == Theory::shell && !patch.covered.values().empty()) findSheared(patch);
     refuseIfLoose(patch, settings);
     if (object.stiffening().empty()) return;
     patch.stiffeningAtNodes = std::move(next->rigidity);
@@ -510,8 +523,9 @@ std::shared_ptr<const CoarseObject> coarseFor(const SoftObject& object, const Co
 }
 
 /// Does everything up to the plate, as far as the points determine a surface.
-void makePlate(Patch& patch, const SoftObject& object, const Contact& contact, const PatchSettings& settings,
-               const std::optional<Frame>& carried)
+/// \param whole  whose points `object` has, or the means of
+void makePlate(Patch& patch, const SoftObject& object, const SoftObject& whole, const Contact& contact,
+               const PatchSettings& settings, const std::optional<Frame>& carried)
 {
     Ball           ball    = gatherPoints(patch, object, contact, settings); // 2.1: the points near the contact,
     TouchedSurface surface = touchedSurface(patch, object, ball, settings);  // on the side that is touched,
@@ -524,7 +538,10 @@ void makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
         curvePatch(patch, object, {laid.touched, std::span(patch.positions).first(patch.touched), laid.normals},
                    settings); //      and, if it is to be a shell, their curvature
         patch.followed       = placesFollowed(patch, object, laid.normals);
-        patch.bodyCompliance = bodyCompliance(patch, object, settings);
+        if (patch.isCut)
+            patch.body = bodyOnWindow(patch, whole, object, settings);
+        else
+            patch.bodyCompliance = bodyCompliance(patch, object, settings);
     }
     patch.gathered = std::move(ball.points);
 }
@@ -533,7 +550,7 @@ void makePlate(Patch& patch, const SoftObject& object, const Contact& contact, c
 
 void prepareTouch(const SoftObject& object, const PatchSettings& given)
 {
-    const PatchSettings settings = settledFor(object, given);
+    const PatchSettings settings = settledFor(object, given); // which makes the coarse shell of a body
     if (settings.neighbourhood == Neighbourhood::ball) return;
     const SurfaceSurvey& survey = object.survey();
     if (survey.spacings().empty()) return;
@@ -552,7 +569,7 @@ Patch windowAbout(const SoftObject& object, const Contact& contact, const PatchS
     const PatchSettings settings = settledFor(object, given);
     Patch               patch;
     patch.coarse = coarseFor(object, contact, settings);
-    makePlate(patch, usedOf(patch, object), contact, settings, carried);
+    makePlate(patch, usedOf(patch, object), object, contact, settings, carried);
     return patch;
 }
 
@@ -638,7 +655,8 @@ std::optional<double> discretisationError(const Patch& patch, const PatchSetting
 std::optional<SupportRange> supportRange(const SoftObject& object, const Patch& patch, const PatchSettings& settings,
                                          PlateSolver& solver)
 {
-    if (settings.theory != Theory::shell || !patch.deformed() || !patch.covered.values().empty()) return {};
+    if (settings.theory != Theory::shell || !patch.deformed() || !patch.covered.values().empty() || patch.isCut)
+        return {};
     constexpr double kWider = 1.25, kSofter = 0.98, kMostBare = 0.1; // [1]; of the nodes, for which there is no object
     PatchSettings    held = settledFor(object, settings);
     held.large            = Large::off;

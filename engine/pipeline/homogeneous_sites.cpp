@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include <glm/geometric.hpp>
 
+#include "engine/body/body_shell.h"
 #include "engine/core/parallel.h"
 
 namespace palp {
@@ -61,9 +63,57 @@ double meanAbout(const glm::dvec3& place, double deviation, const std::vector<Pi
     return sum / weights;
 }
 
+/// A place at which the body was pressed.
+struct Pressed {
+    glm::dvec3 place{};          ///< [m]
+    double     lnCompliance = 0; ///< of c [m/N]
+};
+
+std::vector<Pressed> pressedAllOver(const BodyShell& body, double radius)
+{
+    constexpr std::size_t               kPlaces = 200;
+    const std::vector<BodyNode>&        nodes   = body.mesh().nodes;
+    const std::size_t                   places  = std::min(kPlaces, nodes.size());
+    std::vector<std::optional<Pressed>> found(places);
+    inParallel(places, 8, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            const BodyNode& node  = nodes[(2 * k + 1) * nodes.size() / (2 * places)]; // nodes are in no order
+            const auto      moves = body.under(node.place, node.normal, radius);
+            if (moves && moves->give > 0) found[k] = Pressed{node.place, std::log(moves->give)};
+        }
+    });
+    std::vector<Pressed> pressed;
+    for (const auto& one : found)
+        if (one) pressed.push_back(*one);
+    return pressed;
+}
+
+/// Lets sites give way as the body does, where that is more.
+void giveAsBody(std::vector<HomogeneousLaw::Site>& sites, const SoftObject& object, double radius)
+{
+    constexpr std::size_t      kNearest = 5;
+    const auto                 body     = bodyShellOf(object);
+    const std::vector<Pressed> pressed  = body ? pressedAllOver(*body, radius) : std::vector<Pressed>{};
+    std::vector<glm::dvec3>    places;
+    for (const Pressed& one : pressed) places.push_back(one.place);
+    if (places.empty()) return;
+    const NeighbourIndex near(places);
+    for (HomogeneousLaw::Site& site : sites) {
+        double     sum = 0, weights = 0;
+        const auto around   = near.nearest(site.point, kNearest);
+        const double farthest = around.back().distance;
+        for (const auto& [place, distance] : around) {
+            const double share = farthest > 0 ? 1.01 - distance / farthest : 1;
+            sum += share * share * pressed[place].lnCompliance;
+            weights += share * share;
+        }
+        site.lnCompliance = std::max(site.lnCompliance, sum / weights);
+    }
+}
+
 } // namespace
 
-HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& lattice)
+HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& lattice, const PatchSettings& settings)
 {
     constexpr double      kReach  = 3;   // [deviations]
     constexpr std::size_t kFewest = 500; // pieces that are worth a thread
@@ -91,6 +141,7 @@ HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& 
                         object.stiffening().empty() ? 0 : mean(under, &Piece::stiffening)};
         }
     });
+    if (isCutFromBody(object, settings)) giveAsBody(sites, object, radius);
     return {std::move(sites), cell, !object.stiffening().empty()};
 }
 

@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "engine/body/body_shell.h"
 #include "engine/core/contract.h"
 #include "engine/pipeline/dent_length.h"
 #include "engine/pipeline/detail/whole_object.h"
@@ -15,6 +16,15 @@
 
 namespace palp {
 
+bool isCutFromBody(const SoftObject& object, const PatchSettings& settings)
+{
+    constexpr PlateEdges kOfBody{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
+    if (settings.outside == Outside::body) return true;
+    return !settings.isSettled && settings.theory == Theory::shell && settings.windowOf != WindowOf::object &&
+           settings.neighbourhood == Neighbourhood::surface && settings.foundation == 0 &&
+           settings.edges == kOfBody && bodyShellOf(object) != nullptr;
+}
+
 PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)
 {
     constexpr double kMargin = 1.04, kFinest = 0.25; // lengths to half a side of the window; fingertips to a cell [1]
@@ -22,6 +32,10 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
     PatchSettings    settled = settings;
     if (settings.isSettled) return settled;
     settled.isSettled = true;
+    if (isCutFromBody(object, settings)) {
+        settled.outside = Outside::body;
+        settled.edges   = {Edge::clamped, Edge::clamped, Edge::clamped, Edge::clamped};
+    }
     if (settings.windowOf == WindowOf::dent) {
         const DentWindow window = dentWindow(object, settings);
         settled.windowOf        = WindowOf::contact;
@@ -51,7 +65,7 @@ double bentSize(const SoftObject& object, const PatchSettings& settings)
 double bentSize(const Patch& patch)
 {
     const double side = patch.window.grid.sizeX();
-    return patch.covered.values().empty() ? side : side / 2;
+    return patch.covered.values().empty() || patch.isCut ? side : side / 2;
 }
 
 const SoftObject& usedOf(const Patch& patch, const SoftObject& object) noexcept
@@ -81,6 +95,7 @@ GridNode nodeAtContact(const Patch& patch) noexcept
 
 double bodyFelt(const Patch& patch) noexcept
 {
+    if (patch.body) return patch.bodyCompliance;
     const PlateEdges& edges = patch.plate.edges;
     for (const Edge edge : {edges.x0, edges.x1, edges.z0, edges.z1})
         if (edge != Edge::supported) return 0;

@@ -23,6 +23,8 @@
 
 namespace palp {
 
+struct BodyOnWindow;
+
 /// The points near the contact that make the chart and give the plate its rigidity.
 enum class Neighbourhood {
     surface, ///< the piece of surface that hangs together with the contact, nearer points counting more
@@ -68,6 +70,12 @@ constexpr auto namesOf(Large)
     return std::to_array<NamedValue<Large>>({{off, "off"}, {on, "on"}});
 }
 
+/// What is known of the object outside of a patch window.
+enum class Outside {
+    unknown, ///< the window's edges stand for it: the paper's
+    body     ///< the window is cut from the object as a whole, see BodyShell: its edges move as that does
+};
+
 /// The constants of a scene that decide what a touch feels like, apart from the object itself.
 ///
 /// Patch window, footprint and area of contact are lengths that are never derived from the points at the contact. So
@@ -86,6 +94,7 @@ struct PatchSettings {
     PlateEdges    edges{}; ///< of the window; of a shell that is cut from a larger body best all supported
     ForceLaw      forceLaw  = ForceLaw::series;
     double        tolerance = 1e-4;  ///< of the plate's solution, relative; see PlateSolver::solve [1]
+    Outside       outside   = Outside::unknown; ///< see settledFor()
     bool          isSettled = false; ///< window and cells are those of settledFor()
 };
 
@@ -95,7 +104,16 @@ struct PatchSettings {
 /// about any contact, however it is turned. Its cells are as wide as `window` and `cells` say, but no finer than a
 /// fourth of the fingertip, and 128 of them or more, half of `cells`, go into the length of a strip that spreads as far
 /// as the object; there are 512 at most. Its sides, in the void, are free. A second time changes nothing.
+///
+/// A window that is cut from a body, see isCutFromBody(), is clamped; the body says how its sides move.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
+
+/// Returns whether patch windows are cut from the object as a whole, whose movement a coarse shell of it tells: where
+/// the scene says what holds the object, the theory is a shell's, the window is one of the contact or of a dent with
+/// its edges supported, as they are by default, nothing lies below, and the points are those of one surface, not of a sheet's two
+/// faces.
+/// \note takes some tenths of a second the first time, see bodyShellOf()
+[[nodiscard]] bool isCutFromBody(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.
 [[nodiscard]] double bentSize(const SoftObject& object, const PatchSettings& settings);
@@ -132,6 +150,7 @@ struct Patch {
     int                    thrustsLeftOut = 0;     ///< see FreePieces::leftOut
     int                    tied           = 0;     ///< see HeldInPlane
     bool                   spans          = false; ///< it is held in several places, or by what surrounds it
+    bool                    isCut          = false; ///< from a body whose movement is known, see Outside::body
     /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
     std::optional<CurvatureField> curvature;
     std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not
@@ -160,6 +179,7 @@ struct Patch {
     std::optional<LargeLaw> large;
     std::string             linearBecause;        ///< why it is not there although it was asked for
     NodeField               response;             ///< deflection per force at the nodes [m/N]
+    std::shared_ptr<const BodyOnWindow> body{}; ///< that the window is cut from, where the settings know it; else null
     double                  bodyCompliance   = 0; ///< of a body that the window is cut from, in series [m/N]
     double                  twist            = 0; ///< by which free borders resist less, part of c [m/N]
     double                  curvedBending    = 1; ///< what the response is of the shallow theory's, see givesWay()
@@ -224,8 +244,8 @@ struct GridNode {
 [[nodiscard]] std::pair<double, double> rigiditiesOfSheet(const Patch& patch);
 [[nodiscard]] std::size_t               nodesOfSheet(const Patch& patch);
 
-/// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where an edge is
-/// held or free.
+/// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where a scene holds
+/// an edge, or it is free.
 [[nodiscard]] double bodyFelt(const Patch& patch) noexcept;
 
 /// Returns the largest deflection per force of the object [m/N]; nodes beyond its border do not count.

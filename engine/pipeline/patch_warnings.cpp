@@ -76,6 +76,14 @@ std::string tooDeep(double sag, double limit)
                   "support range");
 }
 
+/// Says the same of a window that is cut from a body, whose sides move as that does.
+std::string tooDeepCut(double sag, double limit)
+{
+    return "the surface is too deep for the theory of shallow shells: it sags " + withOneDecimal(100 * sag) +
+           " % of the patch window's width, expected at most " + std::to_string(std::lround(100 * limit)) +
+           "; try a narrower --window";
+}
+
 constexpr double kMostSagOfWhole = 0.1, kMostSagOfBowl = 0.2; // of what is held at one place [1]
 
 /// Says that an object that bends as a whole is deep. By CalculiX: cups of 100 x 40 mm that are held at one end and sag
@@ -190,7 +198,9 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
     const bool   bent  = std::abs(most) * window >= kHardly;
     const bool   ends  = (bent && least / most > kOneWay) || settings.foundation > 0; // dents, somewhere
     const double asked = reachAt(patch, settings, material).window;                   // [lengths]
-    if (!whole && lengths < kNearly * asked && ends)
+    if (patch.isCut) {
+        if (patch.sag > mostSag(most, least) + kShown) result.push_back(tooDeepCut(patch.sag, mostSag(most, least)));
+    } else if (!whole && lengths < kNearly * asked && ends)
         result.push_back("the patch window is " + withOneDecimal(lengths) + " lengths of the shell wide (" +
                          formatQuantity(patch.shellLength, "m") + " each), so that its edges are felt; " +
                          widerWindow(asked * patch.shellLength, settings) +
@@ -205,7 +215,7 @@ void addCurvature(std::vector<std::string>& result, const Patch& patch, const Pa
             "and --edges");
     const double     limit  = whole ? (patch.spans ? kMostSag : kMostSagOfWhole) : mostSag(most, least);
     constexpr double kKnown = 0.8; // q, see givesWay() [1]
-    if (patch.sag > limit + kShown)
+    if (!patch.isCut && patch.sag > limit + kShown)
         result.push_back(whole ? tooDeepAsAWhole(patch.sag, !patch.spans, least / most > kOneWay)
                                : tooDeep(patch.sag, limit));
     if (std::abs(std::log(patch.curvedBending)) > kKnown)
@@ -286,7 +296,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     addThick(result, patch);
     const bool   whole  = settings.windowOf == WindowOf::object;
     const double window = patch.window.grid.sizeX(); // [m]
-    if (patch.nodesWithoutPoint > 0 && !whole && mayBeFelt(patch, settings, material))
+    if (patch.nodesWithoutPoint > 0 && !whole && !patch.isCut && mayBeFelt(patch, settings, material))
         result.push_back(
             std::to_string(patch.nodesWithoutPoint) + " of " + std::to_string(patch.plate.grid.nodes()) +
             " grid nodes have no point nearby (a hole, a border or the far side): they carry the rigidity of "
@@ -309,6 +319,9 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         result.push_back(std::to_string(std::lround(100 * patch.apart)) +
                          " % of the object are other pieces than the touched one, and are not felt: no points lie "
                          "between them");
+    if (patch.isCut && !patch.body)
+        result.push_back("no part of the object that is held hangs together with this place, as far as its points tell: "
+                         "the edges of the patch window hold it, and it is felt too stiff");
     addCurvature(result, patch, settings, material);
     constexpr double kElsewhere = 0.5,
                      kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5
@@ -326,8 +339,8 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
     if (const double moving = torn(patch) / largest(patch.response); moving > 0.02 && !whole)
         result.push_back("the patch window's edge moves by " + std::to_string(std::lround(100 * moving)) +
                          " % of the largest deflection and nothing moves beyond it: the deformed cloud is torn there");
-    if (settings.foundation == 0 && !patch.curvature &&
-        !whole) // a shell's own stiffness ends its dents; see addCurvature()
+    if (settings.foundation == 0 && !patch.curvature && !whole &&
+        !patch.isCut) // a shell's own stiffness ends its dents; see addCurvature()
         result.push_back(
             "there is no foundation, so the size of the patch window decides: compliance grows with its area" +
             std::string(settings.theory == Theory::shell ? ", and with how its edges are held, see the support range"

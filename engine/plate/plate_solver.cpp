@@ -64,7 +64,7 @@ double looseFor(double tolerance)
 /// may miss what cancels (a strip was felt a third too soft, and called converged).
 class ThrustAnswers {
 public:
-    ThrustAnswers(MultigridShellSolver& solver, const Shell& shell, double tolerance) : thrusts_(shell)
+    ThrustAnswers(MultigridShellSolver& solver, const Shell& shell, double tolerance) : thrusts_(shell), shell_(shell)
     {
         for (const ShellLoad& load : thrusts_.loads()) {
             answers_.push_back(std::move(solver.solve({&load, 1}, tolerance).front()));
@@ -106,6 +106,9 @@ public:
             answer.work -= y[t] * right[t];
             const std::vector<double>& of = answers_[t].deflection.values();
             for (std::size_t n = 0; n < of.size(); ++n) answer.deflection.values()[n] -= y[t] * of[n];
+            std::vector<double>& phi = answer.stressFunction.values(); // where it is wanted
+            for (std::size_t n = 0; n < phi.size(); ++n)
+                phi[n] += y[t] * (shell_.thrusts[t].values()[n] - answers_[t].stressFunction.values()[n]);
         }
     }
 
@@ -118,6 +121,7 @@ private:
     }
 
     Thrusts                    thrusts_;
+    const Shell&               shell_;
     std::vector<ShellAnswer>   answers_;
     std::vector<double>        ofLoads_;
     std::optional<SolveReport> failed_; ///< of a thrust that was not solved: then no answer is one
@@ -127,17 +131,22 @@ private:
 /// right to the tolerance.
 FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell& shell,
                                       std::span<const Footprint> loads, std::size_t whole, double tolerance,
-                                      double drawn)
+                                      double drawn, Stresses stresses)
 {
+    const auto solveWhole = [&](double error) {
+        if (stresses == Stresses::none) return std::move(solver.solve(loads.subspan(whole, 1), error).front());
+        const NodeField load = loads[whole].load(shell.bending.grid);
+        return std::move(solver.solve(std::span(&load, 1), error).front());
+    };
     std::vector<Footprint> others;
     for (std::size_t n = 0; n < loads.size(); ++n)
         if (n != whole) others.push_back(loads[n]);
     const double        loose = looseFor(tolerance);
     const ThrustAnswers thrusts(solver, shell, tolerance);
-    ShellAnswer         first = solver.solve(loads.subspan(whole, 1), std::min(drawn, loose)).front();
+    ShellAnswer         first = solveWhole(std::min(drawn, loose));
     // What thrust takes off a work leaves its error, and loads together may stop with three times the error of one.
     const double left = thrusts.shareLeft(first, loads[whole]), closer = left < 1 ? loose * std::sqrt(left) / 3 : loose;
-    if (closer < std::min(drawn, loose)) first = std::move(solver.solve(loads.subspan(whole, 1), closer).front());
+    if (closer < std::min(drawn, loose)) first = solveWhole(closer);
     auto                rest = solver.solve(others, closer);
     const Shear         shear(shell);
     const CurvedBending curved(shell);
@@ -153,6 +162,7 @@ FootprintSolution byMultigridOfShells(MultigridShellSolver& solver, const Shell&
     }
     if (solution.whole.report.converged) solution.whole.report = first.report;
     solution.whole.deflection = std::move(first.deflection);
+    if (stresses == Stresses::ofWhole) solution.stress = std::move(first.stressFunction);
     return solution;
 }
 
@@ -302,13 +312,13 @@ struct PlateSolver::Multigrid {
     /// another grid too, because a law of large deflections has its own. A shell that is solved once more is not set up
     /// again.
     [[nodiscard]] FootprintSolution solve(const Shell& wanted, std::span<const Footprint> given, std::size_t whole,
-                                          double tolerance, double drawn)
+                                          double tolerance, double drawn, Stresses stresses)
     {
         const bool isKept = wanted.bending.grid.nodes() <= kMostKeptNodes;
         try {
             makeReady(wanted);
             FootprintSolution solution =
-                byMultigridOfShells(*shells.front().solver, wanted, given, whole, tolerance, drawn);
+                byMultigridOfShells(*shells.front().solver, wanted, given, whole, tolerance, drawn, stresses);
             if (!isKept) shells.pop_front();
             return solution;
         } catch (...) {
@@ -777,12 +787,12 @@ FootprintSolution PlateSolver::solveFootprints(const Plate& plate, std::span<con
 }
 
 FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
-                                               double tolerance, double drawn)
+                                               double tolerance, double drawn, Stresses stresses)
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     FootprintSolution solution;
     if (auto exact = byFactor(shell, loads, whole, tolerance)) return std::move(*exact);
-    if (processor_) solution = byProcessor(shell, loads, whole, tolerance, drawn);
+    if (processor_) solution = byProcessor(shell, loads, whole, tolerance, drawn, stresses);
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
         if (processor_) note_ = stoppedAt(solution.whole.report, tolerance);
         solution = byReference(shell, loads, whole, tolerance);
@@ -813,14 +823,14 @@ std::optional<FootprintSolution> PlateSolver::byFactor(const Shell& shell, std::
 }
 
 FootprintSolution PlateSolver::byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
-                                           double tolerance, double drawn)
+                                           double tolerance, double drawn, Stresses stresses)
 {
     if (std::string why = processor_->whyNoShells(); !why.empty()) {
         note_ = std::move(why);
-        return host().solve(shell, loads, whole, tolerance, drawn);
+        return host().solve(shell, loads, whole, tolerance, drawn, stresses);
     }
     try {
-        return processor_->solve(shell, loads, whole, tolerance, drawn);
+        return processor_->solve(shell, loads, whole, tolerance, drawn, stresses);
     } catch (const compute::ProcessorOutOfMemory& error) {
         if (processor_->isHost()) throw;
         note_ = error.what();
@@ -828,7 +838,7 @@ FootprintSolution PlateSolver::byProcessor(const Shell& shell, std::span<const F
         if (processor_->isHost()) throw;
         loseProcessor(error);
     }
-    return host().solve(shell, loads, whole, tolerance, drawn);
+    return host().solve(shell, loads, whole, tolerance, drawn, stresses);
 }
 
 FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
@@ -847,7 +857,10 @@ FootprintSolution PlateSolver::byReference(const Shell& shell, std::span<const F
         solution.responses.back().curved = curved.workOf(of.deflection);
         SolveReport& report              = solution.whole.report;
         const bool   converged           = of.errorEstimate * of.errorEstimate <= tolerance; // as for plates
-        if (n == whole) solution.whole.deflection = std::move(of.deflection);
+        if (n == whole) {
+            solution.whole.deflection = std::move(of.deflection);
+            solution.stress           = std::move(of.stressFunction);
+        }
         if (!report.converged || (converged && n != whole)) continue; // the first that did not, else the whole one's
         report.solver        = kReference;
         report.errorEstimate = of.errorEstimate;

@@ -29,10 +29,14 @@ enum class SoftwareBits {
               ///< for many footprints, by a factor, which has no shader, it takes over itself
 };
 
+/// Whether Airy's function of a shell is wanted with the deflection of its whole load.
+enum class Stresses { none, ofWhole };
+
 /// What footprints on one plate feel.
 struct FootprintSolution {
     std::vector<FootprintResponse> responses; ///< in the order of the loads
     PlateSolution                  whole;     ///< under the load whose whole deflection was asked for
+    NodeField stress{}; ///< phi of a shell under that load [N m] where Stresses::ofWhole was asked for
 };
 
 /// Solves plates: on a GPU or the host by multigrid, or by the reference solver.
@@ -112,7 +116,8 @@ public:
     /// doubles, or whose memory does not fit one, lets the host solve it, and note() says so. On the reference solver
     /// every load is solved by the reference solver of shells.
     [[nodiscard]] FootprintSolution solveFootprints(const Shell& shell, std::span<const Footprint> loads,
-                                                    std::size_t whole, double tolerance, double drawn);
+                                                    std::size_t whole, double tolerance, double drawn,
+                                                    Stresses stresses = Stresses::none);
 
     /// Returns the time that it is [ms]; only differences count.
     using Clock = std::function<double()>;
@@ -173,7 +178,7 @@ private:
     [[nodiscard]] std::optional<FootprintSolution> byFactor(const Shell& shell, std::span<const Footprint> loads,
                                                             std::size_t whole, double tolerance);
     [[nodiscard]] FootprintSolution byProcessor(const Shell& shell, std::span<const Footprint> loads, std::size_t whole,
-                                                double tolerance, double drawn);
+                                                double tolerance, double drawn, Stresses stresses);
     [[nodiscard]] static FootprintSolution byReference(const Shell& shell, std::span<const Footprint> loads,
                                                        std::size_t whole, double tolerance);
 

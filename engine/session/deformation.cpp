@@ -45,7 +45,7 @@ FootprintLattice latticeOf(const Scene& scene, const PatchSettings& settings, co
 Deformation::Deformation(const SoftObject& object, const Scene& scene)
     : object_(&object), law_(scene.complianceLaw), settings_(settledFor(object, scene.patch)),
       solver_(scene.solver, 0, SoftwareBits::ofTheHost), lattice_(latticeOf(scene, settings_, object, solver_)),
-      firstLaw_(homogeneousLaw(object, lattice_))
+      firstLaw_(homogeneousLaw(object, lattice_, settings_))
 {
     if (compute::isProcessorWord(scene.solver, compute::kAutoProcessor)) {
         constexpr double kLongest = 1.0 / 60; // [s]

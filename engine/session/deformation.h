@@ -75,7 +75,7 @@ public:
 
     /// Makes that law anew, of the object as it is painted now: a quarter of a second for a million points.
     /// \pre no session runs, because a servo reads the old one
-    void renewFirstLaw() { firstLaw_ = homogeneousLaw(*object_, lattice_); }
+    void renewFirstLaw() { firstLaw_ = homogeneousLaw(*object_, lattice_, settings_); }
 
     [[nodiscard]] const PlateSolver& plateSolver() const noexcept { return solver_; }
 

@@ -249,7 +249,7 @@ TEST(WholeObject, TheFirstAnswerOnAFoundationIsNearThatOfTheTable)
     const SoftObject sheet(PointCloud(std::move(points), std::move(moduli), StiffnessKind::modulus), kSheet);
     PlateSolver      host("host");
     const auto       lattice = footprintLattice(sheet, settings, 3, host);
-    const auto       first   = homogeneousLaw(sheet, lattice);
+    const auto       first   = homogeneousLaw(sheet, lattice, settings);
     for (const double x : {-20e-3, 20e-3}) {
         const auto guess = first.at({x, 0, 0});
         ASSERT_TRUE(guess) << x;

@@ -355,7 +355,7 @@ TEST(Below, TheFirstTouchAndTheTableKnowTheNodule)
     const double     touch   = deform(object, contact, scene.patch, solver).compliance;
     EXPECT_NEAR(table / touch, 1, 1e-3) << "both are solved to 1e-4";
 
-    const HomogeneousLaw first = homogeneousLaw(object, lattice);
+    const HomogeneousLaw first = homogeneousLaw(object, lattice, scene.patch);
     const auto           at    = first.at(contact.point);
     EXPECT_NEAR(std::exp(at->lnCompliance) / touch, 1, 0.25) << "as good as beside a wart: right to 15 %, and a jump";
 }

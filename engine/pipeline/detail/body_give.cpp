@@ -82,14 +82,20 @@ double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchS
            (1 + settings.foundation * radius * radius * give);
 }
 
-void addToCompliances(ComplianceTable& table, double more) noexcept
+void addToCompliances(ComplianceTable& table, double more, double slopeX, double slopeZ) noexcept
 {
-    if (more == 0) return;
-    for (int n = 0; n < table.side * table.side; ++n) {
-        ComplianceTable::Entry& entry = table.compliance[std::size_t(n)];
-        const double            own = std::exp(entry.value), share = own / (own + more);
-        entry = {std::log(own + more), entry.slopeX * share, entry.slopeZ * share};
-    }
+    constexpr double kLeast = 0.1; // of what it is in the middle, far down a slope [1]
+    if (more == 0 && slopeX == 0 && slopeZ == 0) return;
+    for (int i = 0; i < table.side; ++i)
+        for (int j = 0; j < table.side; ++j) {
+            ComplianceTable::Entry& entry = table.compliance[std::size_t(i * table.side + j)];
+            const double            x = (i - table.side / 2) * table.spacing, z = (j - table.side / 2) * table.spacing;
+            const double            there = more + slopeX * x + slopeZ * z, own = std::exp(entry.value);
+            const bool              isOnSlope = there > kLeast * more;
+            const double            sum       = own + (isOnSlope ? there : kLeast * more);
+            entry = {std::log(sum), (entry.slopeX * own + (isOnSlope ? slopeX : 0)) / sum,
+                     (entry.slopeZ * own + (isOnSlope ? slopeZ : 0)) / sum};
+        }
 }
 
 } // namespace palp

@@ -21,7 +21,9 @@ namespace palp {
 /// \source  Membrane theory of a sphere under a point force, see Fluegge, Stresses in Shells, 1960
 [[nodiscard]] double bodyCompliance(const Patch& patch, const SoftObject& object, const PatchSettings& settings);
 
-/// Adds a compliance [m/N] to what each footprint of a table feels.
-void addToCompliances(ComplianceTable& table, double more) noexcept;
+/// Adds a compliance to what each footprint of a table feels.
+/// \param more            in the middle of the table [m/N]
+/// \param slopeX, slopeZ  how it grows along the table's axes [1/N]
+void addToCompliances(ComplianceTable& table, double more, double slopeX = 0, double slopeZ = 0) noexcept;
 
 } // namespace palp

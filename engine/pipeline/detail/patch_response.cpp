@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/pipeline/detail/body_give.h"
+#include "engine/pipeline/detail/body_on_window.h"
 #include "engine/pipeline/detail/border_twist.h"
 #include "engine/pipeline/detail/coarser_grid.h"
 #include "engine/pipeline/detail/grid_part.h"
@@ -35,6 +36,20 @@ NodeField unitLoad(const Patch& patch, const PatchSettings& settings)
 
 namespace {
 
+Stresses stressesFor(const Patch& patch)
+{
+    return patch.body ? Stresses::ofWhole : Stresses::none;
+}
+
+/// Finds what the body gives way by that a window is cut from.
+void addBody(Patch& patch, const PatchSettings& settings, const GridPart& part, const NodeField& w,
+             const NodeField& phi)
+{
+    if (!patch.body) return;
+    const NodeField stress = phi.values().empty() ? NodeField() : part.onWhole(phi);
+    patch.bodyCompliance   = bodyGive(patch, unitLoad(patch, settings), part.onWhole(w), stress);
+}
+
 /// \param compliance  of the plate alone, by the shallow theory [m/N]
 /// \param curved      what it gives way over that, see givesWay() [1]
 void keep(Patch& patch, const PatchSettings& settings, const GridPart& part, PlateSolution solution, double compliance,
@@ -59,9 +74,11 @@ void bendPlate(Patch& patch, const PatchSettings& settings, PlateSolver& solver)
     const Footprint   finger = part.of(Footprint(unitLoad(patch, settings)));
     FootprintSolution solved =
         patch.curvature
-            ? solver.solveFootprints(part.of(shellOf(patch)), {&finger, 1}, 0, settings.tolerance, settings.tolerance)
+            ? solver.solveFootprints(part.of(shellOf(patch)), {&finger, 1}, 0, settings.tolerance, settings.tolerance,
+                                     stressesFor(patch))
             : solver.solveFootprints(part.of(patch.plate), {&finger, 1}, 0, settings.tolerance, settings.tolerance);
     const FootprintResponse& felt = solved.responses.front();
+    addBody(patch, settings, part, solved.whole.deflection, solved.stress);
     keep(patch, settings, part, std::move(solved.whole), felt.work, givesWay(felt));
 }
 
@@ -72,13 +89,16 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
     const GridPart   part(patch);
     const auto       solved = [&](const FootprintLattice& loads) {
         return patch.curvature
-                         ? solveTable(part.of(shellOf(patch)), patch.below, loads, solver, settings.tolerance, table)
+                         ? solveTable(part.of(shellOf(patch)), patch.below, loads, solver, settings.tolerance, table,
+                                      stressesFor(patch))
                          : solveTable(part.of(patch.plate), patch.below, loads, solver, settings.tolerance, table);
     };
     const bool     whole  = !patch.covered.values().empty();
     MiddleSolution middle = solved(whole ? part.of(onSheet(lattice, patch)) : lattice);
     if (whole) fillContact(sheetRigidity(patch), lattice, table);
-    addToCompliances(table, bodyFelt(patch));
+    addBody(patch, settings, part, middle.solution.deflection, middle.stress);
+    addToCompliances(table, bodyFelt(patch), patch.body ? 2 * patch.body->tiltX : 0,
+                     patch.body ? 2 * patch.body->tiltZ : 0);
     table.chart = chartAtContact(patch);
     fillStiffening(patch.stiffeningAtNodes, lattice, table);
     keep(patch, settings, part, std::move(middle.solution), middle.compliance, middle.curved);

@@ -192,7 +192,7 @@ bool isLensAtContact(const Patch& patch, const SoftObject& object, double bent)
 /// no bed, while the deflection beside it may be anything.
 NodeField stretchedOf(const Patch& patch)
 {
-    if (patch.covered.values().empty()) return {};
+    if (patch.covered.values().empty() || patch.isCut) return {}; // of a body what is beyond the window says the rest
     if (patch.heldInPlane.values().empty()) return NodeField(patch.plate.grid, 1);
     constexpr double kGround = 1e-2; // share that is held [1]
     NodeField        stretched(patch.plate.grid);

@@ -176,6 +176,7 @@ struct DirectShell::Impl {
     /// Returns what the numbers leave of the forces, by eights at each unknown.
     [[nodiscard]] std::vector<double> left(const std::vector<double>& forces, const std::vector<double>& x) const;
     [[nodiscard]] NodeField           deflection(const std::vector<double>& x, std::size_t lane) const;
+    [[nodiscard]] NodeField           stressFunction(const std::vector<double>& x, std::size_t lane) const;
 };
 
 bool DirectShell::pays(const Shell& shell)
@@ -388,6 +389,18 @@ NodeField DirectShell::Impl::deflection(const std::vector<double>& x, std::size_
     return w;
 }
 
+NodeField DirectShell::Impl::stressFunction(const std::vector<double>& x, std::size_t lane) const
+{
+    NodeField phi(shell.bending.grid);
+    for (std::size_t n = 0; n < ofPhi.size(); ++n) {
+        if (ofPhi[n] != kNone) phi.values()[n] = phiUnit * x[std::size_t(ofPhi[n]) * kLoadsTogether + lane];
+        for (std::size_t t = 0; t < shell.thrusts.size(); ++t)
+            phi.values()[n] += phiUnit * x[(std::size_t(firstThrust) + t) * kLoadsTogether + lane] *
+                               shell.thrusts[t].values()[n];
+    }
+    return phi;
+}
+
 bool DirectShell::Impl::solveEight(std::span<const Footprint> footprints, bool refined, double& worst)
 {
     std::vector<double> forces(numbers.size(), 0.0);
@@ -446,7 +459,9 @@ std::optional<FootprintSolution> DirectShell::Impl::solve(std::span<const Footpr
             solution.responses[n] = responseOf(footprints[n], w);
             solution.responses[n].work += shear.workOf(w) - squeezeWork(shell, w, footprints[n]);
             solution.responses[n].curved = curved->workOf(w);
-            if (n == whole) solution.whole.deflection = std::move(w);
+            if (n != whole) continue;
+            solution.whole.deflection = std::move(w);
+            solution.stress           = stressFunction(numbers, lane);
         }
     }
     if (!rounding) rounding = worst;

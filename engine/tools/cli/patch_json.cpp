@@ -62,7 +62,8 @@ Json windowJson(const Patch& patch)
             {"nodes_without_point", patch.nodesWithoutPoint},
             {"rigidity_min", least},
             {"rigidity_max", most},
-            {"of", patch.covered.values().empty() ? "contact" : "object"},
+            {"of", patch.covered.values().empty() || patch.isCut ? "contact" : "object"},
+            {"beyond", patch.body ? "body" : patch.covered.values().empty() || patch.isCut ? "edges" : "nothing"},
             {"nodes_covered", nodesOfSheet(patch)},
             {"nodes_held", patch.heldNodes}};
 }
@@ -71,7 +72,7 @@ Json windowJson(const Patch& patch)
 Json shellJson(const SoftObject& object, const Patch& patch, const PatchSettings& settings, PlateSolver& solver)
 {
     const auto range = supportRange(object, patch, settings, solver);
-    if (!patch.curvature && !range) return nullptr;
+    if (!patch.curvature && !range && !patch.body) return nullptr;
     const double below = settings.foundation / rigidityAtContact(patch);
     const bool   isEnded =
         patch.curvature &&
