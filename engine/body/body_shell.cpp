@@ -46,11 +46,11 @@ struct Borne {
 } // namespace
 
 struct BodyShell::Impl {
-    BodyMesh               mesh;
-    std::vector<bool>      onHeldPiece;
-    std::vector<int>       firstOf; ///< number of each node's first unknown, or kFixed
+    BodyMesh          mesh;
+    std::vector<bool> onHeldPiece;
+    std::vector<int>  firstOf; ///< number of each node's first unknown, or kFixed
     Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>> factors;
-    bool                   isSound = false;
+    bool                                                                 isSound = false;
 
     explicit Impl(const SoftObject& object, std::size_t most) : mesh(bodyMesh(object, most))
     {
@@ -70,7 +70,7 @@ struct BodyShell::Impl {
     void findHeldPieces()
     {
         constexpr int                    kFewest = 3; // nodes hold a sheet in space
-        const std::vector<std::uint32_t> of = piecesOf(mesh);
+        const std::vector<std::uint32_t> of      = piecesOf(mesh);
         std::vector<int>                 held(mesh.nodes.size());
         for (std::size_t node = 0; node < of.size(); ++node) held[of[node]] += mesh.nodes[node].held;
         onHeldPiece.resize(mesh.nodes.size());
@@ -89,16 +89,18 @@ struct BodyShell::Impl {
                 ln += std::log(mesh.nodes[triangle.nodes[k]].rigidity) / 3;
             }
             if (!onHeldPiece[triangle.nodes[0]]) continue;
-            const TriangleStiffness own = triangle.share * shellTriangle(corners, material.modulus(std::exp(ln)),
-                                                                         material.poissonRatio, material.thickness);
+            const TriangleStiffness own =
+                shellTriangle(corners, material.modulus(std::exp(ln)), material.poissonRatio, material.thickness);
             for (int a = 0; a < 3; ++a)
                 for (int b = 0; b < 3; ++b) {
-                    const int row = firstOf[triangle.nodes[std::size_t(a)]];
+                    const int row    = firstOf[triangle.nodes[std::size_t(a)]];
                     const int column = firstOf[triangle.nodes[std::size_t(b)]];
                     if (row == kFixed || column == kFixed || column > row) continue;
                     for (int i = 0; i < kFreedoms; ++i)
                         for (int j = 0; j < (row == column ? i + 1 : kFreedoms); ++j)
-                            entries.emplace_back(row + i, column + j, own(kFreedoms * a + i, kFreedoms * b + j));
+                            entries.emplace_back(
+                                row + i, column + j,
+                                triangle.share * own[std::size_t(kFreedoms * a + i)][std::size_t(kFreedoms * b + j)]);
                 }
         }
         Matrix matrix(unknowns, unknowns);
@@ -112,9 +114,9 @@ struct BodyShell::Impl {
         constexpr double kWide = 2, kAlong = 0.3, kFarther = 1.5; // [spacings], cosine, [1]
         double           reach = std::max(radius, kWide * mesh.spacing);
         for (int attempt = 0; attempt < 3; ++attempt, reach *= kFarther) {
-            const FlatFrame         frame = FlatFrame::about(place, outward);
-            std::vector<Borne>      borne;
-            Eigen::Matrix3d         matrix = Eigen::Matrix3d::Zero();
+            const FlatFrame              frame = FlatFrame::about(place, outward);
+            std::vector<Borne>           borne;
+            Eigen::Matrix3d              matrix = Eigen::Matrix3d::Zero();
             std::vector<Eigen::Vector3d> rows;
             for (std::size_t node = 0; node < mesh.nodes.size(); ++node) {
                 const glm::dvec3 d  = mesh.nodes[node].place - place;
@@ -126,7 +128,7 @@ struct BodyShell::Impl {
                 rows.emplace_back(1, flat.x, flat.y);
                 matrix += borne.back().share * rows.back() * rows.back().transpose();
             }
-            constexpr double kSound = 1e-3; // of the largest [1]
+            constexpr double                                     kSound = 1e-3; // of the largest [1]
             const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
             if (borne.size() < 3 || solver.eigenvalues()[0] < kSound * solver.eigenvalues()[2]) continue;
             const Eigen::Vector3d fit = matrix.ldlt().solve(Eigen::Vector3d(1, 0, 0));

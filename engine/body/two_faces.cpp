@@ -12,9 +12,9 @@ namespace {
 /// Returns whether another face lies behind or before a point.
 bool hasOtherFace(const SoftObject& object, std::size_t point, std::vector<std::uint32_t>& near)
 {
-    constexpr double     kLeast = 0.4, kMost = 2.5;         // [thicknesses]
-    constexpr double     kAside = 0.5, kAlong = 0.7;        // of the distance; cosine of 45 degrees [1]
-    constexpr double     kSpacings = 1.2, kNoises = 6;      // a surface's own points lie no farther off it [1]
+    constexpr double     kLeast = 0.4, kMost = 2.5;    // [thicknesses]
+    constexpr double     kAside = 0.5, kAlong = 0.7;   // of the distance; cosine of 45 degrees [1]
+    constexpr double     kSpacings = 1.2, kNoises = 6; // a surface's own points lie no farther off it [1]
     const SurfaceSurvey& survey = object.survey();
     const double         h      = object.material().thickness;
     const double         least =
@@ -42,8 +42,7 @@ bool hasTwoFaces(const SoftObject& object)
     std::vector<std::uint32_t> near;
     double                     two = 0, all = 0;
     if (object.survey().spacings().empty()) return false;
-    for (std::size_t point = 0; point < object.size(); point += step, ++all)
-        two += hasOtherFace(object, point, near);
+    for (std::size_t point = 0; point < object.size(); point += step, ++all) two += hasOtherFace(object, point, near);
     return two > kShare * all;
 }
 

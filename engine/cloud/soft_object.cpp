@@ -47,8 +47,7 @@ SoftObject::SoftObject(PointCloud cloud, const Material& material, std::vector<T
       survey_(std::make_shared<const SurfaceSurvey>(
           *index_, normals.empty() ? std::span<const glm::vec3>(normalsOf(*faces_, cloud_.positions())) : normals)),
       links_(std::make_shared<SurfaceLinks>(index_, survey_)), curvatureNotes_(std::make_shared<CurvatureNotes>()),
-      bodyNote_(std::make_shared<BodyNote>()),
-      foundationShape_(std::make_shared<const std::vector<double>>()),
+      bodyNote_(std::make_shared<BodyNote>()), foundationShape_(std::make_shared<const std::vector<double>>()),
       stiffening_(std::make_shared<const std::vector<double>>()), held_(std::make_shared<const std::vector<double>>()),
       material_(material)
 {

@@ -175,7 +175,7 @@ std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& 
     const double     bias        = fitBias(radius, larger, smaller) - (faceted ? 0 : changeBias(patch));
     if (bias > kMostFitBias) said.push_back(onSparse(patch.spacing, larger, bias));
     if (bias < -kMostFitBias) said.push_back(onChanging(radius, -bias));
-    if (settings.windowOf != WindowOf::object && settings.foundation == 0 && smaller / larger > kOneWay)
+    if (settings.windowOf != WindowOf::object && !patch.isCut && settings.foundation == 0 && smaller / larger > kOneWay)
         if (const double width = openWidth(usedOf(patch, object)); width > 0) said.push_back(openObject(width));
     if (faceted)
         said.push_back(

@@ -417,10 +417,9 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
     if (!object.stiffening().empty()) add(object.stiffening(), growthOf);
 
     // Beyond an object's border there is next to nothing of what its nearest point has, and six cells away none.
-    constexpr double kBeyond = 6;
-    const bool       ends  = settings.windowOf == WindowOf::object || settings.outside == Outside::body;
-    const double     exact =
-        ends ? kBeyond * cellOf(settings) : std::numeric_limits<double>::infinity();
+    constexpr double       kBeyond   = 6;
+    const bool             ends      = settings.windowOf == WindowOf::object || settings.outside == Outside::body;
+    const double           exact     = ends ? kBeyond * cellOf(settings) : std::numeric_limits<double>::infinity();
     std::vector<Resampled> resampled = resampleAll(patch.window, places, values, settings.resampling, finest, sparsest,
                                                    patch.coarse ? Sampling::means : Sampling::places, exact);
     patch.nodesWithoutPoint          = resampled[0].nodesWithoutPoint;
@@ -537,7 +536,7 @@ void makePlate(Patch& patch, const SoftObject& object, const SoftObject& whole, 
         const StageClock clock(patch.times.resample);
         curvePatch(patch, object, {laid.touched, std::span(patch.positions).first(patch.touched), laid.normals},
                    settings); //      and, if it is to be a shell, their curvature
-        patch.followed       = placesFollowed(patch, object, laid.normals);
+        patch.followed = placesFollowed(patch, object, laid.normals);
         if (patch.isCut)
             patch.body = bodyOnWindow(patch, whole, object, settings);
         else

@@ -273,11 +273,28 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
             "as wide as " + reach + ", ask for " + (allOver ? "at nearly all places" : "on average") + finer};
 }
 
+/// Chooses a width where the window is cut from the object as a whole, which says how its edges move: it need not hold a
+/// dent, and the narrower it is the more nearly level.
+Choice chosenOnBody(const SoftObject& object, const PatchSettings& settings, double least)
+{
+    constexpr double     kRadii = 1.25, kNarrow = -1; // radii of curvature; [standard deviations]
+    std::vector<Weighed> widths;                      // [m]
+    for (const Bend& bend : bendsOf(object, settings))
+        widths.push_back({std::min(settings.window, kRadii / std::abs(bend.most)), bend.area});
+    const double wanted = widths.empty() ? settings.window : meanAndDeviations(widths, kNarrow);
+    const char*  body   = ", where it is cut from a coarse shell of the whole object, which says how its edges move";
+    if (wanted < least) return {{least, settings.cells}, std::string("four radii of the fingertip") + body};
+    if (wanted >= settings.window)
+        return {{settings.window, settings.cells}, std::string("the width without auto") + body};
+    return {{wanted, settings.cells}, std::string("over which most of the surface is nearly level") + body};
+}
+
 Choice chosen(const SoftObject& object, const PatchSettings& settings)
 {
     constexpr double kSome = 0.02; // of the surface, where the fits of a tube may see two ways to bend [1]
     const double     least = 4 * settings.footprintRadius;
-    const Asked      asked = askedBy(object, settings, bendsOf(object, settings));
+    if (isCutFromBody(object, settings)) return chosenOnBody(object, settings, least);
+    const Asked asked = askedBy(object, settings, bendsOf(object, settings));
     if (asked.share > kSome) return chosenBy(asked, object, settings, least);
     if (settings.theory == Theory::plate)
         return {{settings.window, settings.cells},

@@ -99,8 +99,8 @@ void giveAsBody(std::vector<HomogeneousLaw::Site>& sites, const SoftObject& obje
     if (places.empty()) return;
     const NeighbourIndex near(places);
     for (HomogeneousLaw::Site& site : sites) {
-        double     sum = 0, weights = 0;
-        const auto around   = near.nearest(site.point, kNearest);
+        double       sum = 0, weights = 0;
+        const auto   around   = near.nearest(site.point, kNearest);
         const double farthest = around.back().distance;
         for (const auto& [place, distance] : around) {
             const double share = farthest > 0 ? 1.01 - distance / farthest : 1;

@@ -21,8 +21,8 @@ bool isCutFromBody(const SoftObject& object, const PatchSettings& settings)
     constexpr PlateEdges kOfBody{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
     if (settings.outside == Outside::body) return true;
     return !settings.isSettled && settings.theory == Theory::shell && settings.windowOf != WindowOf::object &&
-           settings.neighbourhood == Neighbourhood::surface && settings.foundation == 0 &&
-           settings.edges == kOfBody && bodyShellOf(object) != nullptr;
+           settings.neighbourhood == Neighbourhood::surface && settings.foundation == 0 && settings.edges == kOfBody &&
+           bodyShellOf(object) != nullptr;
 }
 
 PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)

@@ -93,9 +93,9 @@ struct PatchSettings {
     Large         large           = Large::off;
     PlateEdges    edges{}; ///< of the window; of a shell that is cut from a larger body best all supported
     ForceLaw      forceLaw  = ForceLaw::series;
-    double        tolerance = 1e-4;  ///< of the plate's solution, relative; see PlateSolver::solve [1]
+    double        tolerance = 1e-4;             ///< of the plate's solution, relative; see PlateSolver::solve [1]
     Outside       outside   = Outside::unknown; ///< see settledFor()
-    bool          isSettled = false; ///< window and cells are those of settledFor()
+    bool          isSettled = false;            ///< window and cells are those of settledFor()
 };
 
 /// Returns the settings with the window and the cells of this object: as they are, unless the window is chosen by what
@@ -150,7 +150,7 @@ struct Patch {
     int                    thrustsLeftOut = 0;     ///< see FreePieces::leftOut
     int                    tied           = 0;     ///< see HeldInPlane
     bool                   spans          = false; ///< it is held in several places, or by what surrounds it
-    bool                    isCut          = false; ///< from a body whose movement is known, see Outside::body
+    bool                   isCut          = false; ///< from a body whose movement is known, see Outside::body
     /// Of the surface at the nodes, if it bent as a shell; empty: as a plate.
     std::optional<CurvatureField> curvature;
     std::string flatBecause; ///< why it bent as a plate although a shell was asked for; empty: it need not
@@ -176,18 +176,18 @@ struct Patch {
     double      apart     = 0; ///< share of the sheet in pieces that are not touched [1]
     NodeField   sheared{};     ///< see Shell, where the window spans the object
     /// The force of the plate alone over the depth of the dent, if the settings ask for it; empty: it is linear.
-    std::optional<LargeLaw> large;
-    std::string             linearBecause;        ///< why it is not there although it was asked for
-    NodeField               response;             ///< deflection per force at the nodes [m/N]
+    std::optional<LargeLaw>             large;
+    std::string                         linearBecause; ///< why it is not there although it was asked for
+    NodeField                           response;      ///< deflection per force at the nodes [m/N]
     std::shared_ptr<const BodyOnWindow> body{}; ///< that the window is cut from, where the settings know it; else null
-    double                  bodyCompliance   = 0; ///< of a body that the window is cut from, in series [m/N]
-    double                  twist            = 0; ///< by which free borders resist less, part of c [m/N]
-    double                  curvedBending    = 1; ///< what the response is of the shallow theory's, see givesWay()
-    double                  compliance       = 0; ///< c: response averaged over the footprint, and the body's [m/N]
-    double                  contactStiffness = 0; ///< k_c [N/m]
-    double                  feltStiffness    = 0; ///< [N/m]
-    double                  stiffening       = 0; ///< b under the footprint [1/m], see DepthLaw
-    NodeField               stiffeningAtNodes;    ///< [1/m]; empty: b is the same everywhere
+    double                              bodyCompliance = 0; ///< of a body that the window is cut from, in series [m/N]
+    double                              twist          = 0; ///< by which free borders resist less, part of c [m/N]
+    double    curvedBending    = 1; ///< what the response is of the shallow theory's, see givesWay()
+    double    compliance       = 0; ///< c: response averaged over the footprint, and the body's [m/N]
+    double    contactStiffness = 0; ///< k_c [N/m]
+    double    feltStiffness    = 0; ///< [N/m]
+    double    stiffening       = 0; ///< b under the footprint [1/m], see DepthLaw
+    NodeField stiffeningAtNodes;    ///< [1/m]; empty: b is the same everywhere
 
     /// The object that was touched in place of one far denser than the grid; empty: the object itself. The points below
     /// are its.

@@ -320,8 +320,9 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
                          " % of the object are other pieces than the touched one, and are not felt: no points lie "
                          "between them");
     if (patch.isCut && !patch.body)
-        result.push_back("no part of the object that is held hangs together with this place, as far as its points tell: "
-                         "the edges of the patch window hold it, and it is felt too stiff");
+        result.push_back(
+            "no part of the object that is held hangs together with this place, as far as its points tell: "
+            "the edges of the patch window hold it, and it is felt too stiff");
     addCurvature(result, patch, settings, material);
     constexpr double kElsewhere = 0.5,
                      kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5

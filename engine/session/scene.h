@@ -200,6 +200,10 @@ struct LoadedObject {
 /// \throws Error if the cloud is a map of felt stiffness
 [[nodiscard]] LoadedObject objectOf(LoadedCloud loaded, const Scene& scene);
 
+/// Returns the object of these points with what the scene says that holds it.
+/// \throws Error if the scene holds what its cloud does not say
+[[nodiscard]] SoftObject heldAs(const Scene& scene, const SoftObject& object, const LoadedCloud& loaded);
+
 /// Does the same as loadCloud() without the overlay.
 [[nodiscard]] LoadedCloud loadBareCloud(const Scene& scene);
 

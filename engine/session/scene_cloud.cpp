@@ -174,6 +174,12 @@ bool statesStiffening(const Scene& scene)
     return stated != scene.origins.end() && stated->second.origin != Origin::standard;
 }
 
+SoftObject heldAs(const Scene& scene, const SoftObject& object, const LoadedCloud& loaded)
+{
+    if (!scene.held.isThere()) return object;
+    return object.withHeld(heldShares(object.positions(), scene.held, loaded.held, openingOf(scene, "held")));
+}
+
 LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
 {
     if (loaded.cloud.kind() == StiffnessKind::felt)
@@ -182,8 +188,7 @@ LoadedObject objectOf(LoadedCloud loaded, const Scene& scene)
                     "felt [N/m]; palpate fit makes an object of it");
     SoftObject object(std::move(loaded.cloud), scene.material, std::move(loaded.faces), loaded.normals);
     if (!statesStiffening(scene)) object = object.withStiffening(std::move(loaded.stiffening));
-    if (scene.held.isThere())
-        object = object.withHeld(heldShares(object.positions(), scene.held, loaded.held, openingOf(scene, "held")));
+    object = heldAs(scene, object, loaded);
     return {onTissue(object.standingFor(std::move(loaded.mesh)), scene, loaded.foundation), std::move(loaded.report)};
 }
 

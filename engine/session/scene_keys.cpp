@@ -405,7 +405,8 @@ SceneKey windowKey(const Control& control)
                   "object bends, free at its borders and held where the key held says so; or auto, the default of "
                   "shells: 8 times the length over which a dent of this object dies away, more where it is curved "
                   "unequally both ways, and 10 or 12 times where a foundation ends the dents; where nothing ends them, "
-                  "at most the width without auto, which is that of the sample or 40 mm; palpate touch says which",
+                  "at most the width without auto, which is that of the sample or 40 mm; where the key held says what "
+                  "holds a shell, 1.25 radii of its curvature, and as much at most; palpate touch says which",
          .group = kTouch,
          .unit  = "m",
          .form  = "object, auto, or a length from 1e-6 to 100 m, such as 70 mm",
@@ -438,7 +439,8 @@ std::vector<SceneKey> patchKeys()
         windowKey(window),
         {.name = "held",
          .help = "where the object is held and cannot bend: in a box, in a ball, about points, or, with own, where the "
-                 "file's property held is 1",
+                 "file's property held is 1; of a shell on no foundation the patch window is then cut from the object "
+                 "as a whole, and what lies beyond the window is felt too",
          .group        = kTouch,
          .kind         = Kind::objects,
          .form         = kHeldForm,

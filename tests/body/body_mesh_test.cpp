@@ -47,8 +47,9 @@ double areaOf(const BodyMesh& mesh)
     double sum = 0;
     for (const BodyTriangle& triangle : mesh.triangles) {
         const glm::dvec3 a = mesh.nodes[triangle.nodes[0]].place;
-        sum += triangle.share / 2 *
-               glm::length(glm::cross(mesh.nodes[triangle.nodes[1]].place - a, mesh.nodes[triangle.nodes[2]].place - a));
+        sum +=
+            triangle.share / 2 *
+            glm::length(glm::cross(mesh.nodes[triangle.nodes[1]].place - a, mesh.nodes[triangle.nodes[2]].place - a));
     }
     return sum;
 }

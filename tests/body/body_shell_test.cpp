@@ -58,10 +58,10 @@ std::vector<glm::dvec3> tube(double radius, double length, double spacing)
 TEST(BodyShell, AClampedDiscGivesWayAsKirchhoffSays)
 {
     constexpr double kRadius = 30e-3;
-    const SoftObject plate   = heldWhere(objectOf(disc(36e-3, 1e-3), kSheet),
-                                         [](const glm::dvec3& p) { return glm::length(p) > kRadius; });
-    const BodyShell  body(plate, 1500);
-    const auto       moves = body.under({0, 0, 0}, {0, 0, 1}, 4e-3);
+    const SoftObject plate =
+        heldWhere(objectOf(disc(36e-3, 1e-3), kSheet), [](const glm::dvec3& p) { return glm::length(p) > kRadius; });
+    const BodyShell body(plate, 1500);
+    const auto      moves = body.under({0, 0, 0}, {0, 0, 1}, 4e-3);
     ASSERT_TRUE(moves);
     // w(r) = P / (16 pi D) (a^2 - r^2 - 2 r^2 ln(a / r)), Timoshenko and Woinowsky-Krieger 1959, art. 19.
     const double D = kSheet.rigidity(kModulus);
@@ -76,14 +76,15 @@ TEST(BodyShell, AClampedDiscGivesWayAsKirchhoffSays)
 TEST(BodyShell, ATubeBendsAsABeam)
 {
     constexpr double kRadius = 10e-3, kLength = 120e-3, kHeld = 10e-3, kAt = 100e-3;
-    const SoftObject object  = heldWhere(objectOf(tube(kRadius, kLength, 1e-3), kSheet),
-                                         [](const glm::dvec3& p) { return p.z < kHeld; });
-    const BodyShell  body(object);
-    const auto       moves = body.under({kRadius, 0, kAt}, {1, 0, 0}, 4e-3);
+    const SoftObject object =
+        heldWhere(objectOf(tube(kRadius, kLength, 1e-3), kSheet), [](const glm::dvec3& p) { return p.z < kHeld; });
+    const BodyShell body(object);
+    const auto      moves = body.under({kRadius, 0, kAt}, {1, 0, 0}, 4e-3);
     ASSERT_TRUE(moves);
     // The side that is not pressed moves as the axis does; Timoshenko's beam with a shear area of half the tube's.
-    const double I = std::numbers::pi * std::pow(kRadius, 3) * kSheet.thickness, area = 2 * std::numbers::pi * kRadius * kSheet.thickness;
-    const double G = kModulus / (2 * (1 + kSheet.poissonRatio));
+    const double I    = std::numbers::pi * std::pow(kRadius, 3) * kSheet.thickness,
+                 area = 2 * std::numbers::pi * kRadius * kSheet.thickness;
+    const double G    = kModulus / (2 * (1 + kSheet.poissonRatio));
     double       sum = 0, expected = 0;
     for (std::size_t node = 0; node < body.mesh().nodes.size(); ++node) {
         const glm::dvec3 p = body.mesh().nodes[node].place;
@@ -97,9 +98,9 @@ TEST(BodyShell, ATubeBendsAsABeam)
 
 TEST(BodyShell, MovesLessWhereItIsFinerByHalfOfTheError)
 {
-    const SoftObject object = heldWhere(objectOf(tube(20e-3, 80e-3, 1e-3), kSheet),
-                                        [](const glm::dvec3& p) { return p.z < 5e-3; });
-    const auto       far    = [&](std::size_t nodes) {
+    const SoftObject object =
+        heldWhere(objectOf(tube(20e-3, 80e-3, 1e-3), kSheet), [](const glm::dvec3& p) { return p.z < 5e-3; });
+    const auto far = [&](std::size_t nodes) {
         const BodyShell body(object, nodes);
         const auto      moves = body.under({20e-3, 0, 50e-3}, {1, 0, 0}, 4e-3);
         double          sum = 0, count = 0;

@@ -374,6 +374,26 @@ TEST(CalculixShells, ADishBendsAboutItsStemAsAShell)
     }
 }
 
+/// In windows of 40 mm or less about the contact, beyond which a coarse shell of the whole object says the rest.
+TEST(CalculixShells, WhatIsHeldIsFeltThroughWindowsThatAreCutFromItToo)
+{
+    PlateSolver host("host");
+    for (const CalculixShell& of : kCalculixShells) {
+        if (kindOf(of.name) != Kind::whole) continue;
+        const Object     object   = objectNamed(of.name);
+        const SoftObject cloud    = cloudOf(object, of.thickness);
+        PatchSettings    settings = settingsOf(object, Theory::shell, Edge::supported);
+        settings.windowOf         = WindowOf::dent;
+        settings.window           = 40e-3;
+        const Patch patch         = deform(cloud, touchAt(cloud, object.touch, object.outward, 10e-3), settings, host);
+        std::printf("  %s, %.0f mm: window %.0f mm, cut from the body %+.1f %%\n", std::string(of.name).c_str(),
+                    1e3 * of.thickness, 1e3 * patch.window.grid.sizeX(),
+                    100 * (1 / patch.compliance / of.stiffness - 1));
+        EXPECT_TRUE(patch.body) << of.name;
+        EXPECT_NEAR(1 / patch.compliance / of.stiffness, 1, 0.05) << of.name;
+    }
+}
+
 TEST(CalculixPresses, AreFeltUpToOneAndAHalfThicknesses)
 {
     for (const CalculixPress& of : kCalculixPresses) {

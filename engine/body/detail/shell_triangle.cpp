@@ -34,7 +34,7 @@ Matrix3 planeStress(double modulus, double nu)
 /// the numbers of corners, less one.
 Matrix9 membrane(const Flat& of, const Matrix3& E, double nu, double thickness)
 {
-    constexpr double            kAlpha = 1.5;
+    constexpr double            kAlpha       = 1.5;
     constexpr double            kBetas[3][3] = {{1, 2, 1}, {0, 1, -1}, {-1, -1, -2}};
     const double                beta0 = std::max((1 - 4 * nu * nu) / 2, 0.01), A = of.area;
     Eigen::Matrix<double, 9, 3> L;
@@ -69,18 +69,17 @@ Matrix9 membrane(const Flat& of, const Matrix3& E, double nu, double thickness)
         (y(1, 2) * x(2, 3) + x(2, 1) * y(3, 2)) * l13;
     Te /= 4 * A * A;
     const Matrix3 natural = Te.transpose() * E * Te;
-    const auto    Q       = [&](const int (&rows)[3], int shift) { // which beta stands first in a row, by rows of betas
-        Matrix3 q;
+    const auto    Q       = [&](const int(&rows)[3], int shift) { // which beta stands first in a row, by rows of betas
+        Matrix3      q;
         const double lengths[] = {l21, l32, l13};
         for (int side = 0; side < 3; ++side)
-            for (int k = 0; k < 3; ++k)
-                q(side, k) = kBetas[rows[side]][(k + shift) % 3] / lengths[side];
+            for (int k = 0; k < 3; ++k) q(side, k) = kBetas[rows[side]][(k + shift) % 3] / lengths[side];
         return Matrix3(2 * A / 3 * q);
     };
     const Matrix3 Q1 = Q({0, 1, 2}, 0), Q2 = Q({2, 0, 1}, 2), Q3 = Q({1, 2, 0}, 1);
     const Matrix3 Q4 = (Q1 + Q2) / 2, Q5 = (Q2 + Q3) / 2, Q6 = (Q3 + Q1) / 2;
-    const Matrix3 higher = A * thickness *
-                           (Q4.transpose() * natural * Q4 + Q5.transpose() * natural * Q5 + Q6.transpose() * natural * Q6);
+    const Matrix3 higher =
+        A * thickness * (Q4.transpose() * natural * Q4 + Q5.transpose() * natural * Q5 + Q6.transpose() * natural * Q6);
     return basic + 0.75 * beta0 * turns.transpose() * higher * turns;
 }
 
@@ -93,8 +92,8 @@ Matrix9 bending(const Flat& of, const Matrix3& D)
         slopeY(k, 3 * k + 1) = 1;
     }
     for (int k = 0; k < 3; ++k) { // the middle of the side from corner k to the next
-        const int    next = (k + 1) % 3;
-        const double length2 = of.square(k, next), sx2 = of.dx(next, k), sy2 = of.dy(next, k);
+        const int                   next    = (k + 1) % 3;
+        const double                length2 = of.square(k, next), sx2 = of.dx(next, k), sy2 = of.dy(next, k);
         Eigen::Matrix<double, 1, 9> along = Eigen::Matrix<double, 1, 9>::Zero(); // times the length
         along(3 * next)                   = 1.5;
         along(3 * k)                      = -1.5;
@@ -111,7 +110,7 @@ Matrix9 bending(const Flat& of, const Matrix3& D)
         share[std::size_t(side)] = share[std::size_t((side + 1) % 3)] = 0.5;
         Eigen::Matrix<double, 1, 6> alongX, alongY; // derivatives of the quadratic shape functions, times 2 A
         for (std::size_t k = 0; k < 3; ++k) {
-            const std::size_t next = (k + 1) % 3;
+            const std::size_t next      = (k + 1) % 3;
             alongX[Eigen::Index(k)]     = (4 * share[k] - 1) * bx[k];
             alongY[Eigen::Index(k)]     = (4 * share[k] - 1) * by[k];
             alongX[Eigen::Index(3 + k)] = 4 * (share[k] * bx[next] + share[next] * bx[k]);
@@ -138,14 +137,14 @@ TriangleStiffness shellTriangle(const std::array<glm::dvec3, 3>& corners, double
         flat.x[k] = glm::dot(corners[k] - corners[0], east);
         flat.y[k] = glm::dot(corners[k] - corners[0], north);
     }
-    flat.area       = glm::length(glm::cross(along, other)) / 2;
-    const Matrix3 E = planeStress(modulus, poissonRatio);
-    const Matrix9 in = membrane(flat, E, poissonRatio, thickness);
+    flat.area         = glm::length(glm::cross(along, other)) / 2;
+    const Matrix3 E   = planeStress(modulus, poissonRatio);
+    const Matrix9 in  = membrane(flat, E, poissonRatio, thickness);
     const Matrix9 out = bending(flat, thickness * thickness * thickness / 12 * E);
     Matrix3       axes; // rows: the triangle's own
     axes << east.x, east.y, east.z, north.x, north.y, north.z, normal.x, normal.y, normal.z;
-    constexpr int     kIn[] = {0, 1, 5}, kOut[] = {2, 3, 4}; // of a corner's six freedoms
-    TriangleStiffness own = TriangleStiffness::Zero();
+    constexpr int                 kIn[] = {0, 1, 5}, kOut[] = {2, 3, 4}; // of a corner's six freedoms
+    Eigen::Matrix<double, 18, 18> own = Eigen::Matrix<double, 18, 18>::Zero();
     for (int a = 0; a < 9; ++a)
         for (int b = 0; b < 9; ++b) {
             own(6 * (a / 3) + kIn[a % 3], 6 * (b / 3) + kIn[b % 3])   = in(a, b);
@@ -153,8 +152,11 @@ TriangleStiffness shellTriangle(const std::array<glm::dvec3, 3>& corners, double
         }
     TriangleStiffness world;
     for (int a = 0; a < 6; ++a)
-        for (int b = 0; b < 6; ++b)
-            world.block<3, 3>(3 * a, 3 * b) = axes.transpose() * own.block<3, 3>(3 * a, 3 * b) * axes;
+        for (int b = 0; b < 6; ++b) {
+            const Matrix3 turned = axes.transpose() * own.block<3, 3>(3 * a, 3 * b) * axes;
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j) world[std::size_t(3 * a + i)][std::size_t(3 * b + j)] = turned(i, j);
+        }
     return world;
 }
 

@@ -1,14 +1,13 @@
 #pragma once
 #include <array>
 
-#include <Eigen/Core>
 #include <glm/vec3.hpp>
 
 namespace palp {
 
 /// The stiffness of a triangle of a shell: of corner k the displacement along x, y and z [m] at 6 k, and a small turn
 /// about these axes [rad] at 6 k + 3. A rigid turn by t about the origin moves a corner at r by t x r.
-using TriangleStiffness = Eigen::Matrix<double, 18, 18>;
+using TriangleStiffness = std::array<std::array<double, 18>, 18>;
 
 /// Returns the stiffness of a flat triangle of a thin sheet.
 ///

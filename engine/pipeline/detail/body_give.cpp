@@ -93,8 +93,8 @@ void addToCompliances(ComplianceTable& table, double more, double slopeX, double
             const double            there = more + slopeX * x + slopeZ * z, own = std::exp(entry.value);
             const bool              isOnSlope = there > kLeast * more;
             const double            sum       = own + (isOnSlope ? there : kLeast * more);
-            entry = {std::log(sum), (entry.slopeX * own + (isOnSlope ? slopeX : 0)) / sum,
-                     (entry.slopeZ * own + (isOnSlope ? slopeZ : 0)) / sum};
+            entry                             = {std::log(sum), (entry.slopeX * own + (isOnSlope ? slopeX : 0)) / sum,
+                                                 (entry.slopeZ * own + (isOnSlope ? slopeZ : 0)) / sum};
         }
 }
 

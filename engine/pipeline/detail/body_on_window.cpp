@@ -19,8 +19,8 @@ namespace {
 
 /// A node of the body near the window.
 struct Site {
-    glm::dvec3 place{};     ///< in the chart, along x and z [m]; y is 0, so that a grid of points finds it
-    glm::dvec3 moved{};     ///< along x, into the surface, along z [m/N]
+    glm::dvec3 place{}; ///< in the chart, along x and z [m]; y is 0, so that a grid of points finds it
+    glm::dvec3 moved{}; ///< along x, into the surface, along z [m/N]
 };
 
 /// Finds where the body's nodes lie in the chart, from the touched points around each of them, which have a place in
@@ -36,12 +36,12 @@ public:
 
     [[nodiscard]] std::optional<Site> siteOf(const BodyNode& node, const glm::dvec3& moved) const
     {
-        constexpr double kNearly = 0.5; // a sheet's normal against the node's [1]
-        Eigen::Matrix3d  matrix = Eigen::Matrix3d::Zero(), right = matrix;
-        double           sum = 0, x = 0, z = 0, count = 0;
+        constexpr double      kNearly = 0.5; // a sheet's normal against the node's [1]
+        Eigen::Matrix3d       matrix = Eigen::Matrix3d::Zero(), right = matrix;
+        double                sum = 0, x = 0, z = 0, count = 0;
         std::array<double, 3> nearest{};
-        double                 least = radius_ * radius_;
-        const auto each = [&](const auto& visit) {
+        double                least = radius_ * radius_;
+        const auto            each  = [&](const auto& visit) {
             grid_.around(node.place, radius_, [&](std::size_t k, double d2) {
                 if (d2 < radius_ * radius_) visit(k, d2);
             });
@@ -70,8 +70,8 @@ public:
         const Eigen::LDLT<Eigen::Matrix3d> factors(matrix);
         constexpr double                   kSound = 1e-3; // of the largest [1]
         if (factors.vectorD().minCoeff() < kSound * factors.vectorD().maxCoeff()) return {};
-        const Eigen::Matrix3d fit = factors.solve(right);
-        const auto vectorOf       = [&](int row) { return glm::dvec3(fit(row, 0), fit(row, 1), fit(row, 2)); };
+        const Eigen::Matrix3d fit      = factors.solve(right);
+        const auto            vectorOf = [&](int row) { return glm::dvec3(fit(row, 0), fit(row, 1), fit(row, 2)); };
         const glm::dvec3 middle = vectorOf(0), east = vectorOf(1), north = vectorOf(2); // of the sheet, from the node
         const double     ee = glm::dot(east, east), en = glm::dot(east, north), nn = glm::dot(north, north);
         const double     det = ee * nn - en * en;
@@ -86,15 +86,14 @@ public:
         const glm::dvec3 e = glm::normalize(east), n = glm::normalize(north);
         const glm::dvec3 half = glm::normalize(e + n), across = glm::normalize(e - n);
         const glm::dvec3 alongX = (half + across) / std::sqrt(2.0), alongZ = (half - across) / std::sqrt(2.0);
-        return Site{{at.x, 0, at.z},
-                    {glm::dot(moved, alongX), -glm::dot(moved, outward), glm::dot(moved, alongZ)}};
+        return Site{{at.x, 0, at.z}, {glm::dot(moved, alongX), -glm::dot(moved, outward), glm::dot(moved, alongZ)}};
     }
 
 private:
     static constexpr double kSpacings = 3, kFewest = 6; // [spacings]; points
 
     const Patch&            patch_;
-    std::vector<glm::dvec3> places_; ///< of the touched points [m]
+    std::vector<glm::dvec3> places_;     ///< of the touched points [m]
     double                  radius_ = 0; ///< [m]
     PointGrid               grid_;
 };
@@ -117,7 +116,7 @@ std::vector<Site> sitesOf(const Patch& patch, const SoftObject& used, const Body
 std::optional<glm::dvec3> movedAt(const PointGrid& grid, const std::vector<Site>& sites, const ChartPoint& at,
                                   double spacing)
 {
-    using Row = Eigen::Matrix<double, 6, 1>;
+    using Row               = Eigen::Matrix<double, 6, 1>;
     constexpr double kReach = 2.5, kWider = 1.4; // [spacings], [1]
     constexpr int    kFewest = 9, kWidenings = 3;
     double           radius = kReach * spacing;
@@ -132,8 +131,7 @@ std::optional<glm::dvec3> movedAt(const PointGrid& grid, const std::vector<Site>
             Row          row;
             row << 1, x, z, x * x, x * z, z * z;
             matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, rest * rest);
-            right += rest * rest * row *
-                     Eigen::RowVector3d(sites[k].moved.x, sites[k].moved.y, sites[k].moved.z);
+            right += rest * rest * row * Eigen::RowVector3d(sites[k].moved.x, sites[k].moved.y, sites[k].moved.z);
             ++count;
         });
         if (count < kFewest) continue;
@@ -172,9 +170,9 @@ public:
     [[nodiscard]] glm::dvec3 at(const ChartPoint& place) const
     {
         const double x = place.x / step_ + kSteps / 2 + kBeyond, z = place.z / step_ + kSteps / 2 + kBeyond;
-        const int    i = std::clamp(int(std::floor(x)), 1, kNodes - 3), j = std::clamp(int(std::floor(z)), 1, kNodes - 3);
-        const auto   u = weights(x - i), v = weights(z - j);
-        glm::dvec3   sum{};
+        const int  i = std::clamp(int(std::floor(x)), 1, kNodes - 3), j = std::clamp(int(std::floor(z)), 1, kNodes - 3);
+        const auto u = weights(x - i), v = weights(z - j);
+        glm::dvec3 sum{};
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b)
                 sum += u[std::size_t(a)] * v[std::size_t(b)] *
@@ -239,9 +237,9 @@ struct Strain {
 
 Strain strainOf(const BodyOnWindow& body, const PlateGrid& grid, const CurvatureField& curved, int i, int j)
 {
-    const auto alongX = [&](const NodeField& of) { return (of(i + 2, j + 1) - of(i, j + 1)) / (2 * grid.spacingX); };
-    const auto alongZ = [&](const NodeField& of) { return (of(i + 1, j + 2) - of(i + 1, j)) / (2 * grid.spacingZ); };
-    const double w    = body.w(i + 1, j + 1);
+    const auto   alongX = [&](const NodeField& of) { return (of(i + 2, j + 1) - of(i, j + 1)) / (2 * grid.spacingX); };
+    const auto   alongZ = [&](const NodeField& of) { return (of(i + 1, j + 2) - of(i + 1, j)) / (2 * grid.spacingZ); };
+    const double w      = body.w(i + 1, j + 1);
     return {alongX(body.x) - curved.x(i, j) * w, alongZ(body.z) - curved.z(i, j) * w,
             (alongZ(body.x) + alongX(body.z)) / 2 - curved.xz(i, j) * w};
 }
@@ -287,17 +285,17 @@ std::shared_ptr<const BodyOnWindow> bodyOnWindow(const Patch& patch, const SoftO
 
 double bodyGive(const Patch& patch, const NodeField& load, const NodeField& w, const NodeField& phi)
 {
-    const BodyOnWindow& body = *patch.body;
-    const PlateGrid&    grid = patch.window.grid;
-    const double        nu = patch.plate.poissonRatio;
-    const auto mirrored    = [](double, double next, double, double) { return next; }; // clamped
-    const auto goingOn     = [](double a, double b, double c, double d) { return 4 * a - 6 * b + 4 * c - d; };
-    const NodeField wide = widened(w, mirrored);
-    const NodeField stress = phi.values().empty() ? NodeField() : widened(phi, goingOn);
-    double give = 0;
+    const BodyOnWindow& body     = *patch.body;
+    const PlateGrid&    grid     = patch.window.grid;
+    const double        nu       = patch.plate.poissonRatio;
+    const auto          mirrored = [](double, double next, double, double) { return next; }; // clamped
+    const auto          goingOn  = [](double a, double b, double c, double d) { return 4 * a - 6 * b + 4 * c - d; };
+    const NodeField     wide     = widened(w, mirrored);
+    const NodeField     stress   = phi.values().empty() ? NodeField() : widened(phi, goingOn);
+    double              give     = 0;
     for (int i = 0; i <= grid.cellsX; ++i)
         for (int j = 0; j <= grid.cellsZ; ++j) {
-            const double area = nodeArea(grid, i, j);
+            const double  area = nodeArea(grid, i, j);
             const Bending own = Bending::at(grid, wide, i + 1, j + 1), of = Bending::at(grid, body.w, i + 1, j + 1);
             give += load(i, j) * body.w(i + 1, j + 1);
             give -= area * patch.plate.rigidity(i, j) *

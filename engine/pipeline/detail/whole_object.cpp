@@ -368,8 +368,8 @@ Footprint onPiece(const Footprint& footprint, const PlateGrid& grid, const NodeF
 
 FootprintLattice onSheet(const FootprintLattice& lattice, const Patch& patch)
 {
-    FootprintLattice own     = lattice;
-    own.wholeObject          = true; // nothing of a homogeneous window is to be taken out where a sheet ends in it
+    FootprintLattice own = lattice;
+    own.wholeObject      = true; // nothing of a homogeneous window is to be taken out where a sheet ends in it
     if (patch.isCut) own.rungs.clear();
     const PlateGrid& grid    = patch.plate.grid;
     const Footprint  touch   = onPiece(lattice.loads[lattice.loads.size() / 2], grid, patch.covered);

@@ -395,8 +395,8 @@ NodeField DirectShell::Impl::stressFunction(const std::vector<double>& x, std::s
     for (std::size_t n = 0; n < ofPhi.size(); ++n) {
         if (ofPhi[n] != kNone) phi.values()[n] = phiUnit * x[std::size_t(ofPhi[n]) * kLoadsTogether + lane];
         for (std::size_t t = 0; t < shell.thrusts.size(); ++t)
-            phi.values()[n] += phiUnit * x[(std::size_t(firstThrust) + t) * kLoadsTogether + lane] *
-                               shell.thrusts[t].values()[n];
+            phi.values()[n] +=
+                phiUnit * x[(std::size_t(firstThrust) + t) * kLoadsTogether + lane] * shell.thrusts[t].values()[n];
     }
     return phi;
 }

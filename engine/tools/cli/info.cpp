@@ -129,10 +129,11 @@ void printInfo(const InfoOptions& options)
     std::optional<Progress> progress("looking at the points");
     progress->mayLast();
     constexpr double kMostTried = 1e6; // points: enough to judge a mesh by the points through which it is touched
-    const SoftObject object  = plan && loaded.cloud.kind() != StiffnessKind::felt && double(plan->points) <= kMostTried
-                                   ? options.source.loadObject(whole).object
-                                   : SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals);
-    QualityReport    quality = qualityReport(object, loaded, scene);
+    const SoftObject object =
+        plan && loaded.cloud.kind() != StiffnessKind::felt && double(plan->points) <= kMostTried
+            ? options.source.loadObject(whole).object
+            : heldAs(scene, SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals), loaded);
+    QualityReport quality = qualityReport(object, loaded, scene);
     if (plan) quality.refusal = scatterRefusal(*plan);
     progress.reset();
 

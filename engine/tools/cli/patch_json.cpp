@@ -63,7 +63,9 @@ Json windowJson(const Patch& patch)
             {"rigidity_min", least},
             {"rigidity_max", most},
             {"of", patch.covered.values().empty() || patch.isCut ? "contact" : "object"},
-            {"beyond", patch.body ? "body" : patch.covered.values().empty() || patch.isCut ? "edges" : "nothing"},
+            {"beyond", patch.body                                      ? "body"
+                       : patch.covered.values().empty() || patch.isCut ? "edges"
+                                                                       : "nothing"},
             {"nodes_covered", nodesOfSheet(patch)},
             {"nodes_held", patch.heldNodes}};
 }

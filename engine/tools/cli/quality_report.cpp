@@ -168,6 +168,7 @@ QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded,
     const bool          whole   = scene.patch.windowOf == WindowOf::object;
     const PatchSettings settled = settledFor(object, scene.patch);
     const double        window  = bentSize(object, settled);
+    const bool          isCut   = settled.outside == Outside::body;
     return {cloudQuality(object),
             sideSources(object, !loaded.normals.empty()),
             loaded.report.coordinateRounding,
@@ -176,10 +177,11 @@ QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded,
             object.cloud().bounds().diagonal(),
             whole ? closedGap(object.spacing(), settled.window / settled.cells) : 0,
             {},
-            isShell ? dentLengths(object, scene.patch) : std::nullopt,
+            isShell && !isCut ? dentLengths(object, scene.patch) : std::nullopt,
             whyDentWindow(object, scene.patch),
             isShell && !whole ? beyondShell(object, scene.patch, window) : BeyondShell{},
-            isShell ? sparseForCurvature(object) : ""};
+            isShell ? sparseForCurvature(object) : "",
+            isCut};
 }
 
 std::vector<std::string> meaningForTouch(const QualityReport& r)
@@ -225,7 +227,7 @@ std::vector<std::string> meaningForTouch(const QualityReport& r)
     if (r.closed > 0)
         said.push_back("the sheet ends at borders and holes; gaps up to " + metres(r.closed) +
                        " wide are taken for sheet: five spacings, of the points or of half a cell");
-    else if (q.border > 0)
+    else if (q.border > 0 && !r.cut)
         said.push_back("at borders and holes the sheet goes on with the stiffness of the nearest points");
     if (q.sided < 0.995) said.push_back(onSides(r));
     if (r.rounding > kStep * q.spacing.typical)

@@ -37,6 +37,7 @@ struct QualityReport {
     std::string                whyWindow{}; ///< whyDentWindow()
     BeyondShell                beyond{};    ///< in patch windows; of shells whose window is not all of the object
     std::string                sparse{};    ///< sparseForCurvature(), of shells
+    bool                       cut = false; ///< windows are cut from the object as a whole, see isCutFromBody()
 };
 
 [[nodiscard]] QualityReport qualityReport(const SoftObject& object, const LoadedCloud& loaded, const Scene& scene);

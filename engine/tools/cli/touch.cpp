@@ -170,7 +170,8 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  contact stiffness  %s\n", quantity("contact_stiffness", "N/m").c_str());
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
-    if (const auto& shell = r["shell"]; !shell.is_null()) printShell(shell, r["compliance"], window["beyond"] == "body");
+    if (const auto& shell = r["shell"]; !shell.is_null())
+        printShell(shell, r["compliance"], window["beyond"] == "body");
     if (const auto& large = r["large"]; !large.is_null()) printLarge(large);
     if (!scene.material.isLinear() || r["stiffening"].get<double>() > 0)
         std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
