@@ -193,21 +193,26 @@ private:
     std::vector<glm::dvec3> values_;
 };
 
-/// Finds how the sides tilt as one: the plane through w on them.
+/// Finds how the window tilts, by how far the middles of opposite sides move: in between the difference between the
+/// object's answer and the window's goes over smoothly, and these know it as it is along the lines through the contact.
+/// Of a tube corners say a third less, because it is flattened between them.
 void findTilt(BodyOnWindow& body, const PlateGrid& grid)
 {
-    double x2 = 0, z2 = 0;
-    for (int i = 0; i <= grid.cellsX; ++i)
-        for (int j = 0; j <= grid.cellsZ; ++j) {
-            if (i % grid.cellsX != 0 && j % grid.cellsZ != 0) continue;
-            const double x = i * grid.spacingX - grid.sizeX() / 2, z = j * grid.spacingZ - grid.sizeZ() / 2;
-            x2 += x * x;
-            z2 += z * z;
-            body.tiltX += x * body.w(i + 1, j + 1);
-            body.tiltZ += z * body.w(i + 1, j + 1);
+    constexpr double kMiddle = 0.2; // of a side, to either hand [1]
+    const auto       mean    = [&](int nodes, const auto& at) {
+        double sum = 0, all = 0;
+        for (int k = 0; k < nodes; ++k) {
+            const double off   = (double(k) / (nodes - 1) - 0.5) / kMiddle,
+                         share = std::pow(std::max(0.0, 1 - off * off), 2);
+            sum += share * at(k + 1);
+            all += share;
         }
-    body.tiltX /= x2;
-    body.tiltZ /= z2;
+        return sum / all;
+    };
+    const auto alongX = [&](int i) { return mean(grid.nodesZ(), [&](int j) { return body.w(i, j); }); };
+    const auto alongZ = [&](int j) { return mean(grid.nodesX(), [&](int i) { return body.w(i, j); }); };
+    body.tiltX        = (alongX(grid.nodesX()) - alongX(1)) / grid.sizeX();
+    body.tiltZ        = (alongZ(grid.nodesZ()) - alongZ(1)) / grid.sizeZ();
 }
 
 /// Returns a field with one more node around, of which `beyond` says what is there, from those at the side and next to

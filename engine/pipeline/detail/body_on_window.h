@@ -25,7 +25,7 @@ struct BodyOnWindow {
     /// s times the displacement along the axes of the chart and into the surface, at the nodes of the window and at one
     /// more around it, so that node (i, j) has (i + 1, j + 1) [m/N].
     NodeField x, z, w;
-    double    tiltX = 0, tiltZ = 0; ///< of the sides as one, how w grows along x and along z [1/N]
+    double    tiltX = 0, tiltZ = 0; ///< how w grows along x and along z, from side to side [1/N]
 };
 
 /// Presses the body that a patch's window is cut from, and finds how the window's sides move.
