@@ -166,6 +166,11 @@ std::vector<std::string> curvatureDoubts(const SoftObject& object, const Patch& 
         if (leftOut(bend) > kMembraneFelt && !(leftOut(patch.sphere.fit.curvature) > kMembraneFelt))
             said.push_back(bentFlat(bend));
     }
+    if (asksForBody(settings) && !object.held().empty() && !patch.isCut)
+        said.push_back(
+            "what holds the object counts only within the patch window: its points are those of a sheet's two "
+            "faces, or too few of them are beside what is held, so that no shell of the whole object is made; "
+            "try --window object, or the points of one face");
     if (!patch.curvature) return said;
     const auto [larger, smaller] = patch.principal;
     const double     radius      = patch.curvature->radius;

@@ -16,13 +16,17 @@
 
 namespace palp {
 
-bool isCutFromBody(const SoftObject& object, const PatchSettings& settings)
+bool asksForBody(const PatchSettings& settings) noexcept
 {
     constexpr PlateEdges kOfBody{Edge::supported, Edge::supported, Edge::supported, Edge::supported};
+    return settings.theory == Theory::shell && settings.windowOf != WindowOf::object &&
+           settings.neighbourhood == Neighbourhood::surface && settings.foundation == 0 && settings.edges == kOfBody;
+}
+
+bool isCutFromBody(const SoftObject& object, const PatchSettings& settings)
+{
     if (settings.outside == Outside::body) return true;
-    return !settings.isSettled && settings.theory == Theory::shell && settings.windowOf != WindowOf::object &&
-           settings.neighbourhood == Neighbourhood::surface && settings.foundation == 0 && settings.edges == kOfBody &&
-           bodyShellOf(object) != nullptr;
+    return !settings.isSettled && asksForBody(settings) && bodyShellOf(object) != nullptr;
 }
 
 PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)

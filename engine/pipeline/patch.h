@@ -108,11 +108,13 @@ struct PatchSettings {
 /// A window that is cut from a body, see isCutFromBody(), is clamped; the body says how its sides move.
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
-/// Returns whether patch windows are cut from the object as a whole, whose movement a coarse shell of it tells: where
-/// the scene says what holds the object, the theory is a shell's, the window is one of the contact or of a dent with
-/// its edges supported, as they are by default, nothing lies below, and the points are those of one surface, not of a sheet's two
-/// faces.
-/// \note takes some tenths of a second the first time, see bodyShellOf()
+/// Returns whether patch windows are to be cut from the object as a whole where something holds it: the theory is a
+/// shell's, the window is one of the contact or of a dent with its edges supported, as they are by default, and nothing
+/// lies below.
+[[nodiscard]] bool asksForBody(const PatchSettings& settings) noexcept;
+
+/// Returns whether they are, see Outside::body: the object has a coarse shell as well, see bodyShellOf().
+/// \note takes some tenths of a second the first time
 [[nodiscard]] bool isCutFromBody(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.

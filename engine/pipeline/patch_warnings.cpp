@@ -261,6 +261,30 @@ void addTooDeep(std::vector<std::string>& result, const Patch& patch, bool mayBe
                           : ""));
 }
 
+/// Says where the body that a window is cut from leaves its theory: the coarse shell is linear, and knows no large
+/// deflections.
+/// \param load  of the window's sheet [N]
+void addBody(std::vector<std::string>& result, const Patch& patch, double load)
+{
+    constexpr double kFar = 0.1, kMost = 0.5; // of the radius of curvature, or the window; of the compliance [1]
+    if (patch.isCut && !patch.body)
+        result.push_back(
+            "no part of the object that is held hangs together with this place, as far as its points tell: "
+            "the edges of the patch window hold it, and it is felt too stiff");
+    if (!patch.body) return;
+    const double bent  = std::max(std::abs(patch.principal.first), 1 / bentSize(patch)); // [1/m]
+    const double moved = load * std::abs(patch.bodyCompliance), far = kFar / bent;       // [m]
+    if (moved > far)
+        result.push_back("the object gives way by " + formatQuantity(moved, "m") +
+                         " as a whole, more than a tenth of its radius of curvature there or of the patch window: its "
+                         "coarse shell is linear; press with less than " +
+                         formatQuantity(load * far / moved, "N"));
+    if (patch.large && patch.bodyCompliance > kMost * patch.compliance)
+        result.push_back(
+            "most of what gives way is the object as a whole, which is linear: large deflections are those "
+            "of the patch window alone");
+}
+
 } // namespace
 
 double membraneLeftOut(const Patch& patch, const PatchSettings& settings, const Material& material, double curvature)
@@ -319,10 +343,7 @@ std::vector<std::string> warnings(const Patch& patch, const PatchSettings& setti
         result.push_back(std::to_string(std::lround(100 * patch.apart)) +
                          " % of the object are other pieces than the touched one, and are not felt: no points lie "
                          "between them");
-    if (patch.isCut && !patch.body)
-        result.push_back(
-            "no part of the object that is held hangs together with this place, as far as its points tell: "
-            "the edges of the patch window hold it, and it is felt too stiff");
+    addBody(result, patch, load);
     addCurvature(result, patch, settings, material);
     constexpr double kElsewhere = 0.5,
                      kFarOut    = 8; // [spacings]; [standard deviations of noise], of which few are beyond 5

@@ -281,7 +281,7 @@ TEST(CutFromABody, WhatHangsOnNothingIsSaid)
         const Patch patch = deform(object, {{x, 0, 0.05}, {1, 0, 0}, true, false}, settings, host);
         const auto  all   = warnings(patch, settings, 0, object.material());
         return std::ranges::any_of(
-                         all, [](const std::string& one) { return one.starts_with("no part of the object that is held"); });
+                         all, [](const std::string& line) { return line.starts_with("no part of the object that is held"); });
     };
     EXPECT_FALSE(said(0.02));
     EXPECT_TRUE(said(0.12));

@@ -60,10 +60,10 @@ std::string placeText(const glm::dvec3& place, double diagonal)
 
 namespace {
 
-/// Says that of an object that is held only a window bends; empty else.
+/// Says that of an object that is held only a window bends, where that is not cut from the object; empty else.
 std::vector<std::string> heldBeyondWindow(const Scene& scene)
 {
-    if (!scene.held.isThere() || scene.patch.windowOf == WindowOf::object) return {};
+    if (!scene.held.isThere() || scene.patch.windowOf == WindowOf::object || asksForBody(scene.patch)) return {};
     return {"what the key held says counts only within the patch window; set --window object for all of it"};
 }
 

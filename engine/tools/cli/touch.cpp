@@ -105,7 +105,7 @@ void printWindow(const nlohmann::json& window)
         std::printf("  window chosen      %s\n", window["chosen"].get<std::string>().c_str());
 }
 
-void printShell(const nlohmann::json& shell, double compliance, bool isCut)
+void printShell(const nlohmann::json& shell, double compliance, double force, bool isCut)
 {
     constexpr double kNoise = 1e-4; // what fits to points leave of no curvature [1]
     const auto   quantity = [](const nlohmann::json& number, const char* unit) { return formatQuantity(number, unit); };
@@ -132,7 +132,8 @@ void printShell(const nlohmann::json& shell, double compliance, bool isCut)
         std::printf("; the answer is that of the scene's: %s\n", shell["edges"].get<std::string>().c_str());
     }
     if (const double body = shell["body_compliance"]; isCut || body > 0)
-        std::printf("  body               gives way by %s of the compliance: %s\n", percent(body / compliance).c_str(),
+        std::printf("  body               gives way by %s of the compliance, %s beside the deflection: %s\n",
+                    percent(body / compliance).c_str(), formatQuantity(force * body, "m").c_str(),
                     isCut ? "the window is cut from a coarse shell of the whole object, held as the scene says"
                           : "a cap is held by its rim, what is closed just below its widest");
 }
@@ -171,7 +172,7 @@ void printTouch(const TouchOptions& options, const Scene& scene, const nlohmann:
     std::printf("  felt stiffness     %s (%s law)\n", quantity("felt_stiffness", "N/m").c_str(),
                 name(settings.forceLaw));
     if (const auto& shell = r["shell"]; !shell.is_null())
-        printShell(shell, r["compliance"], window["beyond"] == "body");
+        printShell(shell, r["compliance"], r["force"], window["beyond"] == "body");
     if (const auto& large = r["large"]; !large.is_null()) printLarge(large);
     if (!scene.material.isLinear() || r["stiffening"].get<double>() > 0)
         std::printf("  depth              %s of the hand at once, %s in the end (stiffening %.4g 1/m, relaxation %s)\n",
