@@ -47,7 +47,12 @@ void addBody(Patch& patch, const PatchSettings& settings, const GridPart& part, 
 {
     if (!patch.body) return;
     const NodeField stress = phi.values().empty() ? NodeField() : part.onWhole(phi);
-    patch.bodyCompliance   = bodyGive(patch, unitLoad(patch, settings), part.onWhole(w), stress);
+    const double    give   = bodyGive(patch, unitLoad(patch, settings), part.onWhole(w), stress);
+    // Clamped sides are the stiffest that there are: less than nothing is an error of the coarse shell.
+    if (std::isfinite(give))
+        patch.bodyCompliance = std::max(0.0, give);
+    else
+        patch.body.reset(); // the warnings say so
 }
 
 /// \param compliance  of the plate alone, by the shallow theory [m/N]
