@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::uint32_t kNone   = std::numeric_limits<std::uint32_t>::max();
 constexpr double        kIsHeld = 0.5; ///< share of a point from which on it is held [1]
-constexpr double        kPoints = 1.1; ///< least spacing of nodes, in spacings of the points [1]
+constexpr double        kPoints = 1.5; ///< least spacing of nodes, in spacings of the points [1]
 constexpr double kDensity       = 0.7; ///< nodes to a square of their spacing, of a random choice with no room left [1]
 
 /// A vector that a point lies outwards along, and how far beyond it the border is.
@@ -236,8 +236,8 @@ private:
     void findTriangles()
     {
         // A circle without a node within is no wider than a spacing of these, and what points leave between them.
-        constexpr double                                  kReach = 2.1, kWidest = 1.3; // [such circles' radii]
-        const double                                      widest = mesh_.spacing + object_.spacing() / 2; // [m]
+        constexpr double                                  kReach = 2.1, kWidest = 1.4; // [such circles' radii]
+        const double                                      widest = mesh_.spacing + object_.spacing(); // [m]
         std::map<std::array<std::uint32_t, 3>, int>       votes;
         std::vector<std::pair<std::uint32_t, glm::dvec2>> around;
         for (std::uint32_t node = 0; node < mesh_.nodes.size(); ++node) {

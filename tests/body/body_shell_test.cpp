@@ -67,7 +67,7 @@ TEST(BodyShell, AClampedDiscGivesWayAsKirchhoffSays)
     const double D = kSheet.rigidity(kModulus);
     for (std::size_t node = 0; node < body.mesh().nodes.size(); ++node) {
         const double r = glm::length(body.mesh().nodes[node].place);
-        if (r < 10e-3 || r > 25e-3) continue; // away from the force, which is spread, and from where it is held
+        if (r < 10e-3 || r > 22e-3) continue; // away from the force, which is spread, and from where it is held
         const double w = (kRadius * kRadius - r * r - 2 * r * r * std::log(kRadius / r)) / (16 * std::numbers::pi * D);
         EXPECT_NEAR(-moves->moved[node].z / w, 1, 0.06) << r; // the rim lies to a fourth of a spacing: 2 % of a radius
     }
