@@ -117,6 +117,17 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
         std::cout << "  warning     " << line << "\n";
 }
 
+/// Returns the object with what the scene says that holds it; without where the scene holds what the cloud does not say:
+/// a file is shown whatever a scene wants of it.
+SoftObject heldIfItCan(const Scene& scene, SoftObject object, const LoadedCloud& loaded)
+{
+    try {
+        return heldAs(scene, object, loaded);
+    } catch (const Error&) {
+        return object;
+    }
+}
+
 void printInfo(const InfoOptions& options)
 {
     if (!options.picture.empty()) demandPictureName("--picture", options.picture);
@@ -132,7 +143,7 @@ void printInfo(const InfoOptions& options)
     const SoftObject object =
         plan && loaded.cloud.kind() != StiffnessKind::felt && double(plan->points) <= kMostTried
             ? options.source.loadObject(whole).object
-            : heldAs(scene, SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals), loaded);
+            : heldIfItCan(scene, SoftObject(loaded.cloud, scene.material, loaded.faces, loaded.normals), loaded);
     QualityReport quality = qualityReport(object, loaded, scene);
     if (plan) quality.refusal = scatterRefusal(*plan);
     progress.reset();
