@@ -55,7 +55,7 @@ public:
     {
         chooseNodes();
         for (std::uint32_t rank = 0; rank < places_.size(); ++rank)
-            if (nearest_[rank].first != kNone) addRigidity(rank);
+            if (nearest_[rank].first != kNone) addRigidity(rank, nearest_[rank].first);
         for (std::size_t n = 0; n < mesh_.nodes.size(); ++n) mesh_.nodes[n].rigidity = std::exp(ln_[n] / count_[n]);
         findTriangles();
         evenOut();
@@ -106,18 +106,25 @@ private:
     {
         constexpr double kBeside = 1.5, kWide = 0.75; // [spacings]
         glm::dvec3       sum{};
+        glm::dvec3       nearest{};
+        double           least = kBeside * spacingOf(rank); // [m]
         for (const std::uint32_t next : links_[rank]) {
-            const glm::dvec3 d = places_[next] - places_[rank];
-            if (isHeld_[next] && glm::length(d) < kBeside * spacingOf(rank)) sum += glm::normalize(d);
+            const glm::dvec3 d      = places_[next] - places_[rank];
+            const double     length = glm::length(d);
+            if (!isHeld_[next] || !(length > 0 && length < kBeside * spacingOf(rank))) continue;
+            sum += d / length;
+            if (length < least) nearest = d;
+            least = std::min(least, length);
         }
-        if (!(glm::length(sum) > 0)) return {};
-        const glm::dvec3 out  = glm::normalize(sum);
+        if (nearest == glm::dvec3(0)) return {};
+        constexpr double kOneSided = 0.1; // of a strip between two supports the nearest says which [1]
+        const glm::dvec3 out       = glm::normalize(glm::length(sum) > kOneSided ? sum : nearest);
         double           free = 0, held = kBeside * spacingOf(rank); // how far they reach, and from where [m]
         for (const std::uint32_t next : links_[rank]) {
             const glm::dvec3 d     = places_[next] - places_[rank];
             const double     along = glm::dot(d, out);
             if (glm::length(d - along * out) > kWide * spacingOf(rank)) continue;
-            (isHeld_[next] ? held : free) = isHeld_[next] ? std::min(held, along) : std::max(free, along);
+            (isHeld_[next] ? held : free) = isHeld_[next] ? std::clamp(along, 0.0, held) : std::max(free, along);
         }
         return (free + held) / 2 * out;
     }
@@ -156,6 +163,7 @@ private:
     /// would else be held as far as its points reach out: a bowl on a stem of 8 mm was 3 % too stiff by that.
     [[nodiscard]] glm::dvec3 smoothed(const Outline& of, std::span<const Outline> outline) const
     {
+        if (!(glm::length(of.outwards) > 0)) return of.outwards;
         constexpr double kReach = 2.5, kAlike = 0.5; // [spacings of points]; cosine of 60 degrees [1]
         const double     radius = std::max(kReach * spacingOf(of.rank), 1.5 * mesh_.spacing);
         const glm::dvec3 out    = glm::normalize(of.outwards);
@@ -174,8 +182,7 @@ private:
     {
         std::vector<Outline>       held, free;
         std::vector<std::uint32_t> rest;
-        for (std::uint32_t k = 0; k < places_.size(); ++k) {
-            const std::uint32_t rank = k;
+        for (std::uint32_t rank = 0; rank < places_.size(); ++rank) {
             if (isHeld_[rank]) continue;
             if (const auto out = towardsHeld(rank))
                 held.push_back({rank, *out});
@@ -184,9 +191,12 @@ private:
             else
                 rest.push_back(rank);
         }
-        for (const Outline& of : shuffled(held)) add(of.rank, smoothed(of, held), true);
-        for (const Outline& of : shuffled(free)) add(of.rank, smoothed(of, free), false);
-        for (const std::uint32_t rank : shuffled(rest)) add(rank, {}, false);
+        for (const Outline& of : shuffled(held))
+            if (hasRoom(of.rank)) add(of.rank, smoothed(of, held), true, true);
+        for (const Outline& of : shuffled(free))
+            if (hasRoom(of.rank)) add(of.rank, smoothed(of, free), true, false);
+        for (const std::uint32_t rank : shuffled(rest))
+            if (hasRoom(rank)) add(rank, {}, false, false);
     }
 
     /// Returns them in an order that leads nowhere, always the same.
@@ -202,9 +212,14 @@ private:
         return result;
     }
 
-    void add(std::uint32_t rank, const glm::dvec3& outwards, bool held)
+    /// Returns whether no node is near a point, so that it may become one.
+    [[nodiscard]] bool hasRoom(std::uint32_t rank) const
     {
-        if (nearest_[rank].second < mesh_.spacing || !(glm::length(object_.survey().normalOfRank(rank)) > 0)) return;
+        return nearest_[rank].second >= mesh_.spacing && glm::length(object_.survey().normalOfRank(rank)) > 0;
+    }
+
+    void add(std::uint32_t rank, const glm::dvec3& outwards, bool outline, bool held)
+    {
         const auto              node = std::uint32_t(mesh_.nodes.size());
         std::vector<glm::dvec3> around;
         const FlatFrame         frame   = FlatFrame::about(places_[rank], object_.survey().normalOfRank(rank));
@@ -219,14 +234,13 @@ private:
         rankOf_.push_back(rank);
         fits_.push_back(flatFit(frame, around, reach));
         mesh_.nodes.push_back({fits_.back().place({}) + outwards, fits_.back().normal({}), 0, held});
-        isFixed_.push_back(outwards != glm::dvec3(0));
+        isFixed_.push_back(outline);
         ln_.push_back(0);
         count_.push_back(0);
         addRigidity(rank, node);
         nearest_[rank] = {kNone, 0}; // counted
     }
 
-    void addRigidity(std::uint32_t rank) { addRigidity(rank, nearest_[rank].first); }
     void addRigidity(std::uint32_t rank, std::uint32_t node)
     {
         ln_[node] += std::log(object_.rigidity(pointOf_[rank]));

@@ -43,18 +43,33 @@ struct Borne {
     double      share = 0; ///< [1]
 };
 
+/// Returns whether a triangle is next to none.
+bool isSliver(const std::array<glm::dvec3, 3>& corners)
+{
+    constexpr double kNone   = 1e-6; // of the square of its longest side [1]
+    double           longest = 0;
+    for (std::size_t k = 0; k < 3; ++k) longest = std::max(longest, glm::distance(corners[k], corners[(k + 1) % 3]));
+    return !(glm::length(glm::cross(corners[1] - corners[0], corners[2] - corners[0])) > kNone * longest * longest);
+}
+
 } // namespace
 
 struct BodyShell::Impl {
-    BodyMesh          mesh;
-    std::vector<bool> onHeldPiece;
-    std::vector<int>  firstOf; ///< number of each node's first unknown, or kFixed
+    BodyMesh                                mesh;
+    std::vector<bool>                       onHeldPiece;
+    std::vector<std::vector<std::uint32_t>> beside;  ///< nodes that triangles join to each
+    std::vector<int>                        firstOf; ///< number of each node's first unknown, or kFixed
     Eigen::SimplicialLDLT<Matrix, Eigen::Lower, Eigen::AMDOrdering<int>> factors;
     bool                                                                 isSound = false;
 
     explicit Impl(const SoftObject& object, std::size_t most) : mesh(bodyMesh(object, most))
     {
         findHeldPieces();
+        beside.resize(mesh.nodes.size());
+        for (const BodyTriangle& triangle : mesh.triangles)
+            for (std::size_t k = 0; k < 3; ++k)
+                for (const std::size_t other : {(k + 1) % 3, (k + 2) % 3})
+                    beside[triangle.nodes[k]].push_back(triangle.nodes[other]);
         int unknowns = 0;
         firstOf.assign(mesh.nodes.size(), kFixed);
         for (std::size_t node = 0; node < firstOf.size(); ++node) {
@@ -64,12 +79,12 @@ struct BodyShell::Impl {
         }
         if (unknowns == 0) return;
         factors.compute(assembled(unknowns, object.material()));
-        isSound = factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all();
+        isSound = factors.info() == Eigen::Success && (factors.vectorD().array() > 0).all(); // not if NaN
     }
 
     void findHeldPieces()
     {
-        constexpr int                    kFewest = 3; // nodes hold a sheet in space
+        constexpr int                    kFewest = 3; // of them: one alone is a stray point
         const std::vector<std::uint32_t> of      = piecesOf(mesh);
         std::vector<int>                 held(mesh.nodes.size());
         for (std::size_t node = 0; node < of.size(); ++node) held[of[node]] += mesh.nodes[node].held;
@@ -88,7 +103,7 @@ struct BodyShell::Impl {
                 corners[k] = mesh.nodes[triangle.nodes[k]].place;
                 ln += std::log(mesh.nodes[triangle.nodes[k]].rigidity) / 3;
             }
-            if (!onHeldPiece[triangle.nodes[0]]) continue;
+            if (!onHeldPiece[triangle.nodes[0]] || isSliver(corners)) continue;
             const TriangleStiffness own =
                 shellTriangle(corners, material.modulus(std::exp(ln)), material.poissonRatio, material.thickness);
             for (int a = 0; a < 3; ++a)
@@ -108,23 +123,52 @@ struct BodyShell::Impl {
         return matrix;
     }
 
-    /// Returns how the nodes about a place bear a force on it: together as far along the surface as it is.
+    /// Returns the node of the touched wall that is nearest to a place, if any is within a distance [m].
+    [[nodiscard]] std::optional<std::uint32_t> nodeAt(const glm::dvec3& place, const glm::dvec3& outward,
+                                                      double reach) const
+    {
+        constexpr double             kAlong = 0.3; // cosine of 73 degrees
+        std::optional<std::uint32_t> nearest;
+        for (std::uint32_t node = 0; node < mesh.nodes.size(); ++node) {
+            const double away = glm::distance(mesh.nodes[node].place, place);
+            if (!(away < reach) || std::abs(glm::dot(mesh.nodes[node].normal, outward)) < kAlong) continue;
+            nearest = node;
+            reach   = away;
+        }
+        return nearest;
+    }
+
+    /// Returns the nodes within a distance [m] of a place that triangles lead to from one.
+    [[nodiscard]] std::vector<std::uint32_t> around(std::uint32_t first, const glm::dvec3& place, double reach) const
+    {
+        std::vector<std::uint32_t> found{first};
+        for (std::size_t k = 0; k < found.size(); ++k)
+            for (const std::uint32_t next : beside[found[k]])
+                if (glm::distance(mesh.nodes[next].place, place) < reach &&
+                    std::ranges::find(found, next) == found.end())
+                    found.push_back(next);
+        return found;
+    }
+
+    /// Returns how the nodes about a place bear a force on it: of the same wall, and together as far along it as the
+    /// place is.
     [[nodiscard]] std::vector<Borne> borneBy(const glm::dvec3& place, const glm::dvec3& outward, double radius) const
     {
-        constexpr double kWide = 2, kAlong = 0.3, kFarther = 1.5; // [spacings], cosine, [1]
+        constexpr double kWide = 2, kFarther = 1.5; // [spacings], [1]
         double           reach = std::max(radius, kWide * mesh.spacing);
         for (int attempt = 0; attempt < 3; ++attempt, reach *= kFarther) {
+            const auto first = nodeAt(place, outward, reach);
+            if (!first) continue;
+            if (!onHeldPiece[*first]) return {};
             const FlatFrame              frame = FlatFrame::about(place, outward);
             std::vector<Borne>           borne;
             Eigen::Matrix3d              matrix = Eigen::Matrix3d::Zero();
             std::vector<Eigen::Vector3d> rows;
-            for (std::size_t node = 0; node < mesh.nodes.size(); ++node) {
-                const glm::dvec3 d  = mesh.nodes[node].place - place;
-                const double     d2 = glm::dot(d, d) / (reach * reach);
-                if (!(d2 < 1) || !onHeldPiece[node]) continue;
-                if (std::abs(glm::dot(mesh.nodes[node].normal, outward)) < kAlong) continue;
+            for (const std::uint32_t node : around(*first, place, reach)) {
+                const glm::dvec3 d    = mesh.nodes[node].place - place;
+                const double     rest = 1 - glm::dot(d, d) / (reach * reach);
                 const glm::dvec2 flat = frame.laid(mesh.nodes[node].place) / reach;
-                borne.push_back({node, (1 - d2) * (1 - d2)});
+                borne.push_back({node, rest * rest});
                 rows.emplace_back(1, flat.x, flat.y);
                 matrix += borne.back().share * rows.back() * rows.back().transpose();
             }

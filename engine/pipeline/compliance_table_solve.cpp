@@ -214,7 +214,7 @@ FootprintLattice footprintLattice(const SoftObject& object, const PatchSettings&
     std::vector<double> rigidities(object.size());
     for (std::size_t point = 0; point < object.size(); ++point) rigidities[point] = object.rigidity(point);
     const PlateGrid grid = PatchWindow::square(settings.window, settings.cells).grid;
-    const Plate     homogeneous{grid, whole ? PlateEdges{} : settings.edges, object.material().poissonRatio,
+    const Plate     homogeneous{grid, whole ? PlateEdges{} : edgesOfWindow(settings), object.material().poissonRatio,
                             settings.foundation, NodeField(grid, geometricMean(rigidities))};
     const double    perRigidity =
         contactStiffness(object.material().modulus(1), settings.footprintRadius, object.material().thickness);

@@ -424,7 +424,7 @@ void fillRigidity(Patch& patch, const SoftObject& object, std::span<const std::u
                                                    patch.coarse ? Sampling::means : Sampling::places, exact);
     patch.nodesWithoutPoint          = resampled[0].nodesWithoutPoint;
     patch.bareFrom                   = resampled[0].bareFrom;
-    patch.plate = {patch.window.grid, settings.edges, object.material().poissonRatio, settings.foundation,
+    patch.plate = {patch.window.grid, edgesOfWindow(settings), object.material().poissonRatio, settings.foundation,
                    std::move(resampled[0].rigidity)};
     refuseIfEmpty(patch, settings);
     auto next = resampled.begin() + 1;
@@ -549,7 +549,7 @@ void makePlate(Patch& patch, const SoftObject& object, const SoftObject& whole, 
 
 void prepareTouch(const SoftObject& object, const PatchSettings& given)
 {
-    const PatchSettings settings = settledFor(object, given); // which makes the coarse shell of a body
+    const PatchSettings settings = settledFor(object, given);
     if (settings.neighbourhood == Neighbourhood::ball) return;
     const SurfaceSurvey& survey = object.survey();
     if (survey.spacings().empty()) return;

@@ -71,14 +71,15 @@ struct Pressed {
 
 std::vector<Pressed> pressedAllOver(const BodyShell& body, double radius)
 {
-    constexpr std::size_t               kPlaces = 200;
+    constexpr std::size_t               kPlaces = 64;
     const std::vector<BodyNode>&        nodes   = body.mesh().nodes;
     const std::size_t                   places  = std::min(kPlaces, nodes.size());
     std::vector<std::optional<Pressed>> found(places);
     inParallel(places, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t k = begin; k < end; ++k) {
-            const BodyNode& node  = nodes[(2 * k + 1) * nodes.size() / (2 * places)]; // nodes are in no order
-            const auto      moves = body.under(node.place, node.normal, radius);
+            const BodyNode& node =
+                nodes[(2 * k + 1) * nodes.size() / (2 * places)]; // those of the outlines, then the others in no order
+            const auto moves = body.under(node.place, node.normal, radius);
             if (moves && moves->give > 0) found[k] = Pressed{node.place, std::log(moves->give)};
         }
     });

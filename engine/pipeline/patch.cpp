@@ -29,6 +29,11 @@ bool isCutFromBody(const SoftObject& object, const PatchSettings& settings)
     return !settings.isSettled && asksForBody(settings) && bodyShellOf(object) != nullptr;
 }
 
+PlateEdges edgesOfWindow(const PatchSettings& settings) noexcept
+{
+    return settings.outside == Outside::body ? PlateEdges{} : settings.edges;
+}
+
 PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings)
 {
     constexpr double kMargin = 1.04, kFinest = 0.25; // lengths to half a side of the window; fingertips to a cell [1]
@@ -36,10 +41,7 @@ PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings
     PatchSettings    settled = settings;
     if (settings.isSettled) return settled;
     settled.isSettled = true;
-    if (isCutFromBody(object, settings)) {
-        settled.outside = Outside::body;
-        settled.edges   = {Edge::clamped, Edge::clamped, Edge::clamped, Edge::clamped};
-    }
+    if (isCutFromBody(object, settings)) settled.outside = Outside::body;
     if (settings.windowOf == WindowOf::dent) {
         const DentWindow window = dentWindow(object, settings);
         settled.windowOf        = WindowOf::contact;

@@ -73,7 +73,7 @@ constexpr auto namesOf(Large)
 /// What is known of the object outside of a patch window.
 enum class Outside {
     unknown, ///< the window's edges stand for it: the paper's
-    body     ///< the window is cut from the object as a whole, see BodyShell: its edges move as that does
+    body     ///< the window is clamped and cut from the object as a whole, see BodyShell: its edges move as that does
 };
 
 /// The constants of a scene that decide what a touch feels like, apart from the object itself.
@@ -105,7 +105,7 @@ struct PatchSettings {
 /// fourth of the fingertip, and 128 of them or more, half of `cells`, go into the length of a strip that spreads as far
 /// as the object; there are 512 at most. Its sides, in the void, are free. A second time changes nothing.
 ///
-/// A window that is cut from a body, see isCutFromBody(), is clamped; the body says how its sides move.
+/// Whether it is cut from a body says isCutFromBody().
 [[nodiscard]] PatchSettings settledFor(const SoftObject& object, const PatchSettings& settings);
 
 /// Returns whether patch windows are to be cut from the object as a whole where something holds it: the theory is a
@@ -116,6 +116,10 @@ struct PatchSettings {
 /// Returns whether they are, see Outside::body: the object has a coarse shell as well, see bodyShellOf().
 /// \note takes some tenths of a second the first time
 [[nodiscard]] bool isCutFromBody(const SoftObject& object, const PatchSettings& settings);
+
+/// Returns the edges of a window's plate: those that the settings say, or clamped ones of a window that is cut from a
+/// body.
+[[nodiscard]] PlateEdges edgesOfWindow(const PatchSettings& settings) noexcept;
 
 /// Returns how wide that is which bends [m]: the window, or an object that it spans, which takes up half of it.
 [[nodiscard]] double bentSize(const SoftObject& object, const PatchSettings& settings);

@@ -13,6 +13,7 @@
 #include "engine/core/extremes.h"
 #include "engine/core/quantity.h"
 #include "engine/pipeline/dent_length.h"
+#include "engine/pipeline/detail/body_on_window.h"
 #include "engine/plate/report_text.h"
 
 namespace palp {
@@ -272,6 +273,12 @@ void addBody(std::vector<std::string>& result, const Patch& patch, double load)
             "no part of the object that is held hangs together with this place, as far as its points tell: "
             "the edges of the patch window hold it, and it is felt too stiff");
     if (!patch.body) return;
+    constexpr double kFine = 8; // spacings of nodes to the window's width at least: the load and the fits reach two [1]
+    if (kFine * patch.body->spacing > bentSize(patch))
+        result.push_back("the nodes of the object's coarse shell are " + formatQuantity(patch.body->spacing, "m") +
+                         " apart, too far to say how the sides of so narrow a patch window move; try a --window of " +
+                         formatQuantity(kFine * patch.body->spacing, "m") +
+                         " or more, or an object cut to what matters");
     const double bent  = std::max(std::abs(patch.principal.first), 1 / bentSize(patch)); // [1/m]
     const double moved = load * std::abs(patch.bodyCompliance), far = kFar / bent;       // [m]
     if (moved > far)

@@ -35,7 +35,10 @@ std::vector<std::string> differencesFromPaper(const PatchSettings& settings)
                         ", the paper's is a plate: what is curved is as soft as what is flat");
     if (settings.large == Large::on)
         lines.push_back("large deflections, the paper has none: a dent of any depth is as stiff as a shallow one");
-    if (settings.edges != PlateEdges{}) lines.push_back("edges other than clamped, the paper's are clamped");
+    if (settings.outside == Outside::body)
+        lines.push_back("a window that is cut from a coarse shell of the whole object, the paper's has clamped edges");
+    else if (settings.edges != PlateEdges{})
+        lines.push_back("edges other than clamped, the paper's are clamped");
     if (settings.foundation != 0)
         lines.push_back("elastic foundation of " + formatQuantity(settings.foundation, "Pa/m") +
                         ", the paper has none: its patch window is felt");

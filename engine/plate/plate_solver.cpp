@@ -791,12 +791,16 @@ FootprintSolution PlateSolver::solveFootprints(const Shell& shell, std::span<con
 {
     PALP_EXPECT(whole < loads.size(), "the load whose deflection is wanted is one of them");
     FootprintSolution solution;
-    if (auto exact = byFactor(shell, loads, whole, tolerance)) return std::move(*exact);
+    if (auto exact = byFactor(shell, loads, whole, tolerance)) {
+        if (stresses == Stresses::none) exact->stress = {};
+        return std::move(*exact);
+    }
     if (processor_) solution = byProcessor(shell, loads, whole, tolerance, drawn, stresses);
     if (!processor_ || (!solution.whole.report.converged && fitsReference(shell.bending.grid))) {
         if (processor_) note_ = stoppedAt(solution.whole.report, tolerance);
         solution = byReference(shell, loads, whole, tolerance);
     }
+    if (stresses == Stresses::none) solution.stress = {};
     // As DirectShell does: the void's own deflection is nothing that stretches a sheet.
     goOnBeyondSheet(solution.whole.deflection, shell);
     noteSolvedBy(solution.whole.report.solver);

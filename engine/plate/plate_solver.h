@@ -36,7 +36,7 @@ enum class Stresses { none, ofWhole };
 struct FootprintSolution {
     std::vector<FootprintResponse> responses; ///< in the order of the loads
     PlateSolution                  whole;     ///< under the load whose whole deflection was asked for
-    NodeField stress{}; ///< phi of a shell under that load [N m] where Stresses::ofWhole was asked for
+    NodeField stress{}; ///< phi of a shell under that load [N m], where Stresses::ofWhole was asked for; else empty
 };
 
 /// Solves plates: on a GPU or the host by multigrid, or by the reference solver.

@@ -96,7 +96,7 @@ TEST(BodyShell, ATubeBendsAsABeam)
     EXPECT_NEAR(sum / expected, 1, 0.04) << "far from the force a tube keeps its circle nearly, 4 % by finer meshes";
 }
 
-TEST(BodyShell, MovesLessWhereItIsFinerByHalfOfTheError)
+TEST(BodyShell, MovesAlikeHoweverFineItIsFarFromTheForce)
 {
     const SoftObject object =
         heldWhere(objectOf(tube(20e-3, 80e-3, 1e-3), kSheet), [](const glm::dvec3& p) { return p.z < 5e-3; });
@@ -113,7 +113,7 @@ TEST(BodyShell, MovesLessWhereItIsFinerByHalfOfTheError)
         return sum / count;
     };
     const double coarse = far(1000), fine = far(4000);
-    EXPECT_NEAR(coarse / fine, 1, 0.03) << "an error that goes with the square of the spacing leaves a third of this";
+    EXPECT_NEAR(coarse / fine, 1, 0.03) << "a spacing of 2.9 mm for 1.5, on a radius of 20 mm";
 }
 
 TEST(BodyShell, ATurnOfTheObjectTurnsItsMoves)

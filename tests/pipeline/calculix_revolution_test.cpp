@@ -137,7 +137,7 @@ double feltBy(const SoftObject& object, const Place& place, const PatchSettings&
 
 class CalculixRevolutions : public ::testing::TestWithParam<std::string> {};
 
-/// Measured: -0.3 to +4.1 %, and of the bowl +3.7 to +8.1: its stem has a radius of 8 mm, where a mesh of 1.6 mm and a sheet
+/// Measured: +0.2 to +4.1 %, and of the bowl +3.9 to +8.3: its stem has a radius of 8 mm, where a mesh of 1.6 mm and a sheet
 /// without shear are too stiff. By the window alone -50 to +1200 %.
 TEST_P(CalculixRevolutions, AreFeltAsStiffAsTheyAre)
 {
@@ -185,8 +185,8 @@ TEST(CutFromABody, PlacesThatAreAlikeAreFeltAlike)
     const double clean = scatterAround(objectOf(bodyNamed("tube"), 1e-3, 3), host);
     const double noisy = scatterAround(objectOf(bodyNamed("tube"), 1e-3, 3, 0.3e-3), host);
     std::printf("around a tube: %.2f %%, with noise of 0.3 spacings %.2f %%\n", 100 * clean, 100 * noisy);
-    EXPECT_LT(clean, 0.01);
-    EXPECT_LT(noisy, 0.02);
+    EXPECT_LT(clean, 0.003) << "0.12 % measured: J of 0.02";
+    EXPECT_LT(noisy, 0.018) << "1.45 % measured: J of 0.2";
 }
 
 TEST(CutFromABody, HowWideTheWindowIsHardlyMatters)
@@ -227,6 +227,26 @@ TEST(CutFromABody, TablesAndTouchesAgree)
                     100 * (found / touch - 1));
         EXPECT_GT(std::abs(other / touch - 1), 0.05) << "else nothing is shown";
         EXPECT_NEAR(found / other, 1, 0.02 * steps * steps) << "to the first order of what the body gives way by";
+    }
+}
+
+TEST(CutFromABody, TablesBesideABorderKnowTheSlopeToo)
+{
+    PlateSolver         host("host");
+    const SoftObject    object   = objectOf(bodyNamed("tube"), 1e-3, 1);
+    const PatchSettings settings = settledFor(object, shellSettings());
+    const auto          lattice  = footprintLattice(object, settings, 3, host);
+    const auto          at       = [](double z) { return Contact{{0.02, 0, z}, {1, 0, 0}, true, false}; };
+    const auto          result   = deformWithTable(object, at(0.092), settings, lattice, host);
+    ASSERT_TRUE(result.table);
+    ASSERT_FALSE(result.patch.covered.values().empty()) << "the tube ends in the window";
+    for (const double z : {0.088, 0.095}) {
+        const double change = deform(object, at(z), settings, host).compliance / result.patch.compliance - 1;
+        const double found  = std::exp(result.table->at(*result.table->chart.project({0.02, 0, z})).lnCompliance) /
+                                 result.patch.compliance -
+                             1;
+        std::printf("at %.0f mm of 100: %+.1f %%, its table %+.1f %%\n", 1e3 * z, 100 * change, 100 * found);
+        EXPECT_NEAR(found / change, 1, 0.3) << z << ": to the first order";
     }
 }
 

@@ -36,12 +36,10 @@ public:
 
     [[nodiscard]] std::optional<Site> siteOf(const BodyNode& node, const glm::dvec3& moved) const
     {
-        constexpr double      kNearly = 0.5; // a sheet's normal against the node's [1]
-        Eigen::Matrix3d       matrix = Eigen::Matrix3d::Zero(), right = matrix;
-        double                sum = 0, x = 0, z = 0, count = 0;
-        std::array<double, 3> nearest{};
-        double                least = radius_ * radius_;
-        const auto            each  = [&](const auto& visit) {
+        constexpr double kNearly = 0.5; // a sheet's normal against the node's [1]
+        Eigen::Matrix3d  matrix = Eigen::Matrix3d::Zero(), right = matrix;
+        double           sum = 0, x = 0, z = 0, count = 0;
+        const auto       each = [&](const auto& visit) {
             grid_.around(node.place, radius_, [&](std::size_t k, double d2) {
                 if (d2 < radius_ * radius_) visit(k, d2);
             });
@@ -52,10 +50,6 @@ public:
             x += share * patch_.positions[k].x;
             z += share * patch_.positions[k].z;
             ++count;
-            if (d2 < least) {
-                least   = d2;
-                nearest = {patch_.positions[k].x, patch_.positions[k].z, 0};
-            }
         });
         if (count < kFewest) return {};
         x /= sum;
@@ -158,6 +152,7 @@ double fading(double x, double z, const PlateGrid& grid)
 class Lattice {
 public:
     static constexpr int kSteps = 32, kBeyond = 3; ///< along the window, and to either side of it
+    static constexpr int kNodes = kSteps + 2 * kBeyond + 1;
 
     explicit Lattice(const PlateGrid& grid) : step_(grid.sizeX() / kSteps), values_(std::size_t(kNodes) * kNodes) {}
 
@@ -165,8 +160,27 @@ public:
     {
         return {(i - kBeyond - kSteps / 2) * step_, (j - kBeyond - kSteps / 2) * step_};
     }
-    [[nodiscard]] glm::dvec3& at(int i, int j) { return values_[std::size_t(i) * kNodes + std::size_t(j)]; }
+    [[nodiscard]] std::optional<glm::dvec3>& at(int i, int j)
+    {
+        return values_[std::size_t(i) * kNodes + std::size_t(j)];
+    }
 
+    /// Gives nodes without a value the mean of those around, from one to the next: beyond a border nothing is felt, but
+    /// the function reaches across it.
+    /// \return false if none has one
+    [[nodiscard]] bool fill()
+    {
+        if (std::ranges::none_of(values_, [](const auto& value) { return value.has_value(); })) return false;
+        while (std::ranges::any_of(values_, [](const auto& value) { return !value; })) {
+            const auto before = values_;
+            for (int i = 0; i < kNodes; ++i)
+                for (int j = 0; j < kNodes; ++j)
+                    if (!at(i, j)) at(i, j) = meanAround(before, i, j);
+        }
+        return true;
+    }
+
+    /// \pre fill()
     [[nodiscard]] glm::dvec3 at(const ChartPoint& place) const
     {
         const double x = place.x / step_ + kSteps / 2 + kBeyond, z = place.z / step_ + kSteps / 2 + kBeyond;
@@ -176,44 +190,36 @@ public:
         for (int a = 0; a < 4; ++a)
             for (int b = 0; b < 4; ++b)
                 sum += u[std::size_t(a)] * v[std::size_t(b)] *
-                       values_[std::size_t(i - 1 + a) * kNodes + std::size_t(j - 1 + b)];
+                       *values_[std::size_t(i - 1 + a) * kNodes + std::size_t(j - 1 + b)];
         return sum;
     }
 
-    static constexpr int kNodes = kSteps + 2 * kBeyond + 1;
-
 private:
+    using Values = std::vector<std::optional<glm::dvec3>>;
+
+    static std::optional<glm::dvec3> meanAround(const Values& values, int i, int j)
+    {
+        glm::dvec3 sum{};
+        double     count = 0;
+        for (int a = std::max(i - 1, 0); a <= std::min(i + 1, kNodes - 1); ++a)
+            for (int b = std::max(j - 1, 0); b <= std::min(j + 1, kNodes - 1); ++b)
+                if (const auto& value = values[std::size_t(a) * kNodes + std::size_t(b)]) {
+                    sum += *value;
+                    ++count;
+                }
+        if (count == 0) return {};
+        return sum / count;
+    }
+
     static std::array<double, 4> weights(double t)
     {
         const double t2 = t * t, t3 = t2 * t;
         return {(-t3 + 2 * t2 - t) / 2, (3 * t3 - 5 * t2 + 2) / 2, (-3 * t3 + 4 * t2 + t) / 2, (t3 - t2) / 2};
     }
 
-    double                  step_; ///< [m]
-    std::vector<glm::dvec3> values_;
+    double step_; ///< [m]
+    Values values_;
 };
-
-/// Finds how the window tilts, by how far the middles of opposite sides move: in between the difference between the
-/// object's answer and the window's goes over smoothly, and these know it as it is along the lines through the contact.
-/// Of a tube corners say a third less, because it is flattened between them.
-void findTilt(BodyOnWindow& body, const PlateGrid& grid)
-{
-    constexpr double kMiddle = 0.2; // of a side, to either hand [1]
-    const auto       mean    = [&](int nodes, const auto& at) {
-        double sum = 0, all = 0;
-        for (int k = 0; k < nodes; ++k) {
-            const double off   = (double(k) / (nodes - 1) - 0.5) / kMiddle,
-                         share = std::pow(std::max(0.0, 1 - off * off), 2);
-            sum += share * at(k + 1);
-            all += share;
-        }
-        return sum / all;
-    };
-    const auto alongX = [&](int i) { return mean(grid.nodesZ(), [&](int j) { return body.w(i, j); }); };
-    const auto alongZ = [&](int j) { return mean(grid.nodesX(), [&](int i) { return body.w(i, j); }); };
-    body.tiltX        = (alongX(grid.nodesX()) - alongX(1)) / grid.sizeX();
-    body.tiltZ        = (alongZ(grid.nodesZ()) - alongZ(1)) / grid.sizeZ();
-}
 
 /// Returns a field with one more node around, of which `beyond` says what is there, from those at the side and next to
 /// it inwards.
@@ -249,6 +255,13 @@ Strain strainOf(const BodyOnWindow& body, const PlateGrid& grid, const Curvature
             (alongZ(body.x) + alongX(body.z)) / 2 - curved.xz(i, j) * w};
 }
 
+/// Returns the share of the nearest node that nothing holds [1]: what is held does not move.
+double freeOf(const Patch& patch, int i, int j)
+{
+    if (patch.held.values().empty()) return 1;
+    return 1 - patch.held(std::clamp(i, 0, patch.window.grid.cellsX), std::clamp(j, 0, patch.window.grid.cellsZ));
+}
+
 } // namespace
 
 std::shared_ptr<const BodyOnWindow> bodyOnWindow(const Patch& patch, const SoftObject& object, const SoftObject& used,
@@ -269,22 +282,22 @@ std::shared_ptr<const BodyOnWindow> bodyOnWindow(const Patch& patch, const SoftO
     const PlateGrid& grid = patch.window.grid;
     Lattice          lattice(grid);
     for (int i = 0; i < Lattice::kNodes; ++i)
-        for (int j = 0; j < Lattice::kNodes; ++j)
-            lattice.at(i, j) = movedAt(near, sites, lattice.place(i, j), spacing).value_or(glm::dvec3(0));
-    auto       result = std::make_shared<BodyOnWindow>();
-    const auto wide   = NodeField(grid.nodesX() + 2, grid.nodesZ() + 2);
+        for (int j = 0; j < Lattice::kNodes; ++j) lattice.at(i, j) = movedAt(near, sites, lattice.place(i, j), spacing);
+    if (!lattice.fill()) return {};
+    auto            result = std::make_shared<BodyOnWindow>();
+    const NodeField wide(grid.nodesX() + 2, grid.nodesZ() + 2);
     result->x = result->z = result->w = wide;
+    result->spacing                   = spacing;
     for (int i = 0; i < wide.nodesX(); ++i)
         for (int j = 0; j < wide.nodesZ(); ++j) {
             const ChartPoint at{(i - 1) * grid.spacingX - grid.sizeX() / 2, (j - 1) * grid.spacingZ - grid.sizeZ() / 2};
             const double     share = fading(at.x, at.z, grid);
             if (share == 0) continue;
-            const glm::dvec3 moved = share * lattice.at(at);
+            const glm::dvec3 moved = share * freeOf(patch, i - 1, j - 1) * lattice.at(at);
             result->x(i, j)        = moved.x;
             result->w(i, j)        = moved.y;
             result->z(i, j)        = moved.z;
         }
-    findTilt(*result, grid);
     return result;
 }
 

@@ -25,7 +25,7 @@ struct BodyOnWindow {
     /// s times the displacement along the axes of the chart and into the surface, at the nodes of the window and at one
     /// more around it, so that node (i, j) has (i + 1, j + 1) [m/N].
     NodeField x, z, w;
-    double    tiltX = 0, tiltZ = 0; ///< how w grows along x and along z, from side to side [1/N]
+    double    spacing = 0; ///< of the coarse shell's nodes [m]
 };
 
 /// Presses the body that a patch's window is cut from, and finds how the window's sides move.
@@ -35,7 +35,8 @@ struct BodyOnWindow {
 [[nodiscard]] std::shared_ptr<const BodyOnWindow> bodyOnWindow(const Patch& patch, const SoftObject& object,
                                                                const SoftObject& used, const PatchSettings& settings);
 
-/// Returns d of the window's answer [m/N].
+/// Returns d of the window's answer: p(s U) - a(u0, s U) [m/N]. Of the change of the fingertip's load as it moves [N/m] it
+/// is half of what d changes by [1/N], because what two loads do along each other's answers is the same.
 /// \param load  of the fingertip, 1 N [N]
 /// \param w     under it, by the shallow theory [m]
 /// \param phi   Airy's function with it [N m]; empty: it bent as a plate

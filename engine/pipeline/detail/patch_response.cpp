@@ -55,6 +55,28 @@ void addBody(Patch& patch, const PatchSettings& settings, const GridPart& part, 
         patch.body.reset(); // the warnings say so
 }
 
+/// Returns how what the body gives way by changes as the fingertip moves along x and along z [1/N]: two more answers of
+/// the window, to the change of the load.
+/// \param loads  of the table, on the part of the window that is solved for
+std::pair<double, double> slopesOfBody(const Patch& patch, const GridPart& part, const FootprintLattice& loads,
+                                       PlateSolver& solver)
+{
+    constexpr double kAbout  = 1e-3; // of a slope: over a table it is a hundredth of c [1]
+    const Plate      plate   = part.of(patch.plate);
+    const Shell      shell   = patch.curvature ? part.of(shellOf(patch)) : Shell{};
+    const auto       changes = [&](double Footprint::Part::*along) {
+        Footprint change = loads.loads[loads.loads.size() / 2];
+        for (Footprint::Part& of : change.parts) of.force = of.*along;
+        const FootprintSolution solved =
+            patch.curvature ? solver.solveFootprints(shell, {&change, 1}, 0, kAbout, kAbout, Stresses::ofWhole)
+                                  : solver.solveFootprints(plate, {&change, 1}, 0, kAbout, kAbout);
+        const NodeField stress = solved.stress.values().empty() ? NodeField() : part.onWhole(solved.stress);
+        return 2 *
+               bodyGive(patch, part.onWhole(change.load(plate.grid)), part.onWhole(solved.whole.deflection), stress);
+    };
+    return {changes(&Footprint::Part::changeX), changes(&Footprint::Part::changeZ)};
+}
+
 /// \param compliance  of the plate alone, by the shallow theory [m/N]
 /// \param curved      what it gives way over that, see givesWay() [1]
 void keep(Patch& patch, const PatchSettings& settings, const GridPart& part, PlateSolution solution, double compliance,
@@ -98,12 +120,13 @@ void bendPlate(Patch& patch, const PatchSettings& settings, const FootprintLatti
                                       stressesFor(patch))
                          : solveTable(part.of(patch.plate), patch.below, loads, solver, settings.tolerance, table);
     };
-    const bool     whole  = !patch.covered.values().empty();
-    MiddleSolution middle = solved(whole ? part.of(onSheet(lattice, patch)) : lattice);
+    const bool             whole  = !patch.covered.values().empty();
+    const FootprintLattice loads  = whole ? part.of(onSheet(lattice, patch)) : lattice;
+    MiddleSolution         middle = solved(loads);
     if (whole) fillContact(sheetRigidity(patch), lattice, table);
     addBody(patch, settings, part, middle.solution.deflection, middle.stress);
-    addToCompliances(table, bodyFelt(patch), patch.body ? 2 * patch.body->tiltX : 0,
-                     patch.body ? 2 * patch.body->tiltZ : 0);
+    const auto [slopeX, slopeZ] = patch.body ? slopesOfBody(patch, part, loads, solver) : std::pair(0.0, 0.0);
+    addToCompliances(table, bodyFelt(patch), slopeX, slopeZ);
     table.chart = chartAtContact(patch);
     fillStiffening(patch.stiffeningAtNodes, lattice, table);
     keep(patch, settings, part, std::move(middle.solution), middle.compliance, middle.curved);

@@ -60,8 +60,8 @@ std::optional<BendInChart> bendAbout(const Chart& chart, const SoftObject& objec
 /// Returns the angle from a principal direction to a side of the window [rad]; empty if it is not to be turned.
 std::optional<double> sideFor(const PatchSettings& settings)
 {
-    const PlateEdges& edges = settings.edges;
-    const bool        alike = edges.x1 == edges.x0 && edges.z0 == edges.x0 && edges.z1 == edges.x0;
+    const PlateEdges edges = edgesOfWindow(settings);
+    const bool       alike = edges.x1 == edges.x0 && edges.z0 == edges.x0 && edges.z1 == edges.x0;
     if (settings.theory != Theory::shell || !alike) return {};
     if (edges.x0 == Edge::supported) return std::numbers::pi / 4; // cut from a larger body
     if (edges.x0 == Edge::clamped) return 0;                      // held across its length, as a tube at its ends
