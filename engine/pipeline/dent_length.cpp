@@ -273,8 +273,8 @@ Choice chosenBy(const Asked& by, const SoftObject& object, const PatchSettings& 
             "as wide as " + reach + ", ask for " + (allOver ? "at nearly all places" : "on average") + finer};
 }
 
-/// Chooses a width where the window is cut from the object as a whole, which says how its edges move: it need not hold a
-/// dent, and the narrower it is the more nearly level.
+/// Chooses a width where the window is cut from the object as a whole, which says how its edges move: it need not
+/// hold a dent, and the narrower it is the more nearly level.
 Choice chosenOnBody(const SoftObject& object, const PatchSettings& settings, double least)
 {
     constexpr double     kRadii = 1.25, kNarrow = -1; // radii of curvature; [standard deviations]

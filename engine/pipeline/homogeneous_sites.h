@@ -15,8 +15,8 @@ namespace palp {
 /// of it. Points of the other face of a thin body count as well.
 ///
 /// Where windows are cut from a body, see isCutFromBody(), a place gives way by what its coarse shell does under a
-/// fingertip there, where that is more: it is pressed at some 64 places, in half a second of one core, and between them ln
-/// c goes over smoothly. Its mesh does not show the dent itself well, so that this is right to a fourth or so.
+/// fingertip there, where that is more: it is pressed at some 64 places, in half a second of one core, and between them
+/// ln c goes over smoothly. Its mesh does not show the dent itself well, so that this is right to a fourth or so.
 /// \thread any; uses all cores, some tenths of a second of one for a million points
 /// \param lattice  of the same object and settings
 [[nodiscard]] HomogeneousLaw homogeneousLaw(const SoftObject& object, const FootprintLattice& lattice,

@@ -250,8 +250,8 @@ struct GridNode {
 [[nodiscard]] std::pair<double, double> rigiditiesOfSheet(const Patch& patch);
 [[nodiscard]] std::size_t               nodesOfSheet(const Patch& patch);
 
-/// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where a scene holds
-/// an edge, or it is free.
+/// Returns what is felt of the body's compliance [m/N]: all where the window is cut from it, nothing where a scene
+/// holds an edge, or it is free.
 [[nodiscard]] double bodyFelt(const Patch& patch) noexcept;
 
 /// Returns the largest deflection per force of the object [m/N]; nodes beyond its border do not count.

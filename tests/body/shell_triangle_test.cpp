@@ -47,7 +47,7 @@ TEST(ShellTriangle, IsSymmetricAndMovesWithoutForceAsARigidBodyAlone)
     // What does not change its volume, too: Felippa's beta_0 would be 0 there.
     for (const double nu : {kPoisson, 0.4999}) {
         const Eigen::SelfAdjointEigenSolver<Matrix> modes(matrixOf(kSkew, nu));
-        // The unit of a turn is a length of some millimetres: the softest mode is 3e-8 of the stiffest, and no more are rigid.
+        // The unit of a turn is a length of some millimetres: the softest mode is 3e-8 of the stiffest.
         EXPECT_GT(modes.eigenvalues()[6], 1e3 * std::abs(modes.eigenvalues()[5]));
         EXPECT_GT(modes.eigenvalues()[6], 0) << nu;
     }

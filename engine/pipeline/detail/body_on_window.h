@@ -35,8 +35,8 @@ struct BodyOnWindow {
 [[nodiscard]] std::shared_ptr<const BodyOnWindow> bodyOnWindow(const Patch& patch, const SoftObject& object,
                                                                const SoftObject& used, const PatchSettings& settings);
 
-/// Returns d of the window's answer: p(s U) - a(u0, s U) [m/N]. Of the change of the fingertip's load as it moves [N/m] it
-/// is half of what d changes by [1/N], because what two loads do along each other's answers is the same.
+/// Returns d of the window's answer: p(s U) - a(u0, s U) [m/N]. Of the change of the fingertip's load as it moves
+/// [N/m] it is half of what d changes by [1/N], because what two loads do along each other's answers is the same.
 /// \param load  of the fingertip, 1 N [N]
 /// \param w     under it, by the shallow theory [m]
 /// \param phi   Airy's function with it [N m]; empty: it bent as a plate

@@ -117,8 +117,8 @@ void printText(const InfoOptions& options, const LoadedCloud& loaded, const Qual
         std::cout << "  warning     " << line << "\n";
 }
 
-/// Returns the object with what the scene says that holds it; without where the scene holds what the cloud does not say:
-/// a file is shown whatever a scene wants of it.
+/// Returns the object with what the scene says that holds it; without where the scene holds what the cloud does not
+/// say: a file is shown whatever a scene wants of it.
 SoftObject heldIfItCan(const Scene& scene, SoftObject object, const LoadedCloud& loaded)
 {
     try {
